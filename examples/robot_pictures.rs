@@ -32,7 +32,11 @@ const SIZE: u32 = 640;
 fn main() -> Result<(), Box<dyn Error>> {
     let floor = backdrop(Vec3::NEG_Z * 7.8, Vec3::new(200.0, 200.0, 1.0));
     let mut scene = Scene {
-        solids: vec![DrawnSolid::of_table(&Table::default(), 1), floor, floor],
+        solids: vec![
+            DrawnSolid::of_table(&Table::default(), 1),
+            floor.clone(),
+            floor,
+        ],
         figures: robot(&baxter()?)?,
         ..default()
     };

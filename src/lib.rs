@@ -49,7 +49,9 @@ pub use tabletop_camera as camera;
 pub use tabletop_controller as controller;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
-pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};
+pub use tabletop_episodes::{
+    imitation, multiplication, robot_body, run_episodes, scene_at_beginning, shown_task, soak,
+};
 pub use tabletop_export as export;
 pub use tabletop_geometry as geometry;
 #[cfg(feature = "window")]

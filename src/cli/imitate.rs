@@ -20,8 +20,8 @@ use tabletop::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
         read_original,
     },
-    robot::{Description, RobotPlugin},
-    scene_at_beginning,
+    robot::RobotPlugin,
+    robot_body, run_episodes, scene_at_beginning,
     task::{Requirements, Task},
 };
 use tabletop_core::{
@@ -96,20 +96,14 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     }
     let robot = args.robot.plugin()?;
     let hand_pictures = args.hand_cameras.of(&robot)?;
-    let description = match robot.description.clone() {
-        Some(description) => description,
-        None => Description::baxter().map_err(Failure::run)?,
-    };
-    let body = RobotBody::new(&description.layout, description.model, &scene.table);
-    let body = body.map_err(Failure::run)?;
+    let body = robot_body(&robot, &scene.table).map_err(Failure::run)?;
     let first = args.seed.unwrap_or(0);
-    let seeds = (0..args.trials.unwrap_or(1)).map(|trial| match args.trials {
-        None => args.seed,
-        Some(_) => Some(first.wrapping_add(trial)),
-    });
     let is_single = args.trials.is_none();
-    let mut trials = Vec::new();
-    for seed in seeds {
+    let attempt = |number: u64| {
+        let seed = match is_single {
+            true => args.seed,
+            false => Some(first.wrapping_add(number)),
+        };
         let folder = args.record.as_ref().map(|folder| match (seed, is_single) {
             (Some(seed), false) => folder.join(seed.to_string()),
             _ => folder.clone(),
@@ -125,18 +119,26 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             seed,
             folder,
         };
-        let trial = attempt.make(is_single)?;
-        if let (false, Some((step, failure))) = (
-            is_single,
-            trial.imitation.as_ref().and_then(|it| it.failure.as_ref()),
-        ) {
-            let seed = seed.unwrap_or(0);
-            say(format_args!(
-                "tabletop: seed {seed}: step {step}: {failure}"
-            ));
-        }
-        trials.push(trial);
-    }
+        attempt.make(is_single)
+    };
+    let mut trials = Vec::new();
+    run_episodes(
+        0..args.trials.unwrap_or(1),
+        1,
+        attempt,
+        |_, trial: Trial| {
+            if let (false, Some((step, failure))) = (
+                is_single,
+                trial.imitation.as_ref().and_then(|it| it.failure.as_ref()),
+            ) {
+                let seed = trial.seed.unwrap_or(0);
+                say(format_args!(
+                    "tabletop: seed {seed}: step {step}: {failure}"
+                ));
+            }
+            trials.push(trial);
+        },
+    )?;
     let is_done = trials.iter().all(|trial| {
         let imitation = trial.imitation.as_ref();
         imitation.is_some_and(|it| it.failure.is_none())

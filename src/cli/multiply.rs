@@ -1,25 +1,16 @@
 //! `tabletop multiply`: one demonstration becomes many.
 
-use std::{
-    collections::BTreeMap,
-    fmt,
-    path::PathBuf,
-    process::ExitCode,
-    sync::{
-        Mutex,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-        mpsc,
-    },
-    thread,
-    time::Instant,
-};
+use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode, thread, time::Instant};
 
-use clap::Args;
+use clap::{
+    Args,
+    builder::{PathBufValueParser, TypedValueParser as _},
+};
 use serde_json::{Value, json};
 use tabletop::{
-    multiplication::{Collection, CollectionError, Demonstrator, Made, Multiplication, Variation},
+    multiplication::{Collection, CollectionError, Made, Multiplication, Variation},
     recorder::RecordingReader,
-    robot::RobotPlugin,
+    run_episodes,
 };
 
 use super::{
@@ -30,6 +21,7 @@ use super::{
     hand_cameras::HandCameraOption,
     progress::ProgressLine,
     range::{NumberRange, SEEDS},
+    robot_options::robot_of,
     terminal::{say, show_warnings},
 };
 
@@ -48,9 +40,10 @@ pub(super) struct MultiplyArgs {
     /// The seed of places and all other differences, from 0 to 18446744073709551615 [default: 0]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = SEEDS, allow_negative_numbers = true)]
     seed: u64,
-    /// Let the robot demonstrate instead of the hand
-    #[arg(long)]
-    robot: bool,
+    /// Let the robot demonstrate instead of the hand: the Baxter inside the program, or the one of this robot.ron (docs/robot.md), or of a URDF
+    /// with the same joints. The recording comes before this option
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(no_folder))]
+    robot: Option<Option<PathBuf>>,
     /// Give the objects other colours, as far as the requirements allow
     #[arg(long)]
     colors: bool,
@@ -84,12 +77,20 @@ const DISTRACTORS: NumberRange<u32> = NumberRange::whole(0, 50);
 const LENGTHS: NumberRange<f32> = NumberRange::decimal(0.0, 10.0).of("units");
 const JOBS: NumberRange<usize> = NumberRange::whole(1, 256);
 
+/// Refuses a folder as a robot's file: it is the recording.
+fn no_folder(file: PathBuf) -> Result<PathBuf, &'static str> {
+    match file.is_dir() {
+        true => Err("it is a folder, not a robot; a recording comes before --robot"),
+        false => Ok(file),
+    }
+}
+
 /// Makes the demonstrations. Exit code 1 if some could not be made.
 pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let demonstrator = match args.robot {
-        true => Demonstrator::Robot,
-        false => Demonstrator::Hand,
+    let robot = match &args.robot {
+        Some(file) => Some(robot_of(file.as_deref())?),
+        None => None,
     };
     let variation = Variation {
         colors: args.colors,
@@ -98,11 +99,12 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         camera: args.camera,
         light: args.light,
     };
-    let hand_pictures = args.hand_cameras.of(&RobotPlugin::default())?;
+    let robot_or_baxter = robot.clone().unwrap_or_default();
+    let hand_pictures = args.hand_cameras.of(&robot_or_baxter)?;
     let recording = RecordingReader::open(&args.recording).map_err(Failure::input)?;
     say_if_cut_off(&recording, "multiplied");
-    let multiplication = Multiplication::of(&recording, demonstrator, variation, args.seed)
-        .map_err(Failure::input)?;
+    let multiplication =
+        Multiplication::of(&recording, robot, variation, args.seed).map_err(Failure::input)?;
     let multiplication = match &args.setup {
         Some(setup) => {
             let scene =
@@ -201,51 +203,17 @@ fn make_all(
 ) -> Result<Tally, Failure> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let jobs = args.jobs.unwrap_or(cores).clamp(1, missing.len().max(1));
-    let next = AtomicU64::new(0);
-    let is_ended = AtomicBool::new(false);
-    let outcome = Mutex::new(Tally::default());
+    let make = |number| make(multiplication, collection, number);
     let mut progress = ProgressLine::new(missing.len() as u64, "");
     let mut done = 0;
-    let (sender, results) = mpsc::channel::<Result<(u64, Made), Failure>>();
-    thread::scope(|scope| {
-        for _ in 0..jobs {
-            let sender = sender.clone();
-            let (next, is_ended) = (&next, &is_ended);
-            scope.spawn(move || {
-                while !is_ended.load(Ordering::Relaxed) {
-                    let turn = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(&number) = missing.get(turn as usize) else {
-                        break;
-                    };
-                    let made = make(multiplication, collection, number);
-                    if sender.send(made.map(|made| (number, made))).is_err() {
-                        break;
-                    }
-                }
-            });
-        }
-        drop(sender);
-        let mut result = Ok(());
-        for made in results {
-            match made {
-                Ok((number, made)) => {
-                    if let Ok(mut outcome) = outcome.lock() {
-                        outcome.note(number, &made);
-                        done += 1;
-                        progress.reach(done, &outcome.dropped_note());
-                    }
-                }
-                Err(failure) => {
-                    is_ended.store(true, Ordering::Relaxed);
-                    result = Err(failure);
-                }
-            }
-        }
-        progress.end();
-        result
-    })?;
-    let mut outcome = outcome.into_inner().unwrap_or_default();
-    outcome.given_up.sort_unstable();
+    let mut outcome = Tally::default();
+    let result = run_episodes(missing.iter().copied(), jobs, make, |number, made| {
+        outcome.note(number, &made);
+        done += 1;
+        progress.reach(done, &outcome.dropped_note());
+    });
+    progress.end();
+    result?;
     for number in &outcome.given_up {
         say(format_args!(
             "tabletop: demonstration {number} could not be made"
@@ -276,7 +244,7 @@ impl MultiplyArgs {
             "made_of": multiplication.fingerprint(),
             "program": env!("CARGO_PKG_VERSION"),
             "seed": self.seed,
-            "robot": self.robot,
+            "robot": self.robot.is_some(),
             "colors": self.colors,
             "sizes": self.sizes,
             "distractors": self.distractors,

@@ -166,7 +166,9 @@ impl Answerer {
         for (name, angles) in posture {
             match angles {
                 Angles::OfLimb(angles) => {
-                    let joints = &self.limb(LimbName::new(&name))?.joints;
+                    let joints = &self
+                        .limb(LimbName::new(&name).map_err(NoAnswer::input)?)?
+                        .joints;
                     if joints.len() != angles.len() {
                         return Err(NoAnswer::Input(format!(
                             "{name} has {} joints, not {}",
@@ -179,7 +181,8 @@ impl Answerer {
                     }
                 }
                 Angles::OfJoint(angle) => {
-                    let joint = layout.find_joint(JointName::new(&name));
+                    let joint = JointName::new(&name).map_err(NoAnswer::input)?;
+                    let joint = layout.find_joint(joint);
                     let joint = joint.filter(|joint| layout.neck == Some(*joint));
                     let joint = joint.ok_or_else(|| {
                         NoAnswer::Input(format!("{name} is neither a limb nor the neck"))

@@ -43,18 +43,23 @@ pub(super) struct RobotOptions {
 impl RobotChoice {
     /// The plugin of this robot.
     pub fn plugin(&self) -> Result<RobotPlugin, Failure> {
-        let description = match &self.robot {
-            Some(path) => Some(describe(path)?),
-            None => None,
+        let mode = match self.dynamic {
+            true => RobotMode::Dynamic,
+            false => RobotMode::Kinematic,
         };
         Ok(RobotPlugin {
-            description,
-            mode: match self.dynamic {
-                true => RobotMode::Dynamic,
-                false => RobotMode::Kinematic,
-            },
+            mode,
+            ..robot_of(self.robot.as_deref())?
         })
     }
+}
+
+/// The robot of a file, or the Baxter inside the program.
+pub(super) fn robot_of(file: Option<&Path>) -> Result<RobotPlugin, Failure> {
+    Ok(RobotPlugin {
+        description: file.map(describe).transpose()?,
+        ..default()
+    })
 }
 
 impl RobotOptions {

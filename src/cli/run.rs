@@ -14,17 +14,17 @@ use tabletop::{
     TabletopSimPlugins,
     assembly::{IdAllocator, assemble},
     core::{
-        RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _,
-        TICKS_PER_SECOND, WriteCommand as _,
+        RestingSystems, RobotFact, RobotLayout, SceneCommand, SceneSpec, SimFact, SimTick,
+        StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
-    recorder::{RecorderPlugin, UnrecordedPlugin},
+    recorder::{HandPictures, RecorderPlugin, UnrecordedPlugin},
+    robot::RobotPlugin,
     script::{ScriptPlugin, shut_down},
     shipped::{read_scenario, task_reader, true_path},
     shown_task::shown_task,
     task::Furniture,
     task_files::save_task,
-    xml::AllowedFolders,
 };
 use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
@@ -111,10 +111,13 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
-            let (mut app, result) = put_on_table(setup, &args.allowed.folders, plugins(args)?)?;
+            let plugins = plugins(args, args.robot.plugin()?)?;
+            let (scene, result) = scene_of(setup, &args.allowed.folders)?;
+            let mut app = headless_app_with(plugins);
             app.add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
+            args.tell_task(&mut app, Some(&scene))?;
+            put_on_table(scene, &mut app);
             args.robot.show(&mut app);
-            args.tell_task(&mut app, Some(setup))?;
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
@@ -134,32 +137,32 @@ pub(super) fn simulate(
     seconds: f64,
     final_state: &Output,
 ) -> Result<ExitCode, Failure> {
-    let (mut app, result) = put_on_table(setup, allowed, TabletopSimPlugins.build())?;
+    let (scene, result) = scene_of(setup, allowed)?;
+    let mut app = headless_app_with(TabletopSimPlugins);
+    put_on_table(scene, &mut app);
     pass(&mut app, ticks(seconds));
     write_final_state(&app, final_state)?;
     Ok(result)
 }
 
-/// The simulator that loads a task file in its first tick, and the exit code for the file's faults.
-fn put_on_table(
-    setup: &Path,
-    allowed: &[PathBuf],
-    plugins: PluginGroupBuilder,
-) -> Result<(App, ExitCode), Failure> {
+/// The scene of a task file, and the exit code for its faults, which are reported.
+fn scene_of(setup: &Path, allowed: &[PathBuf]) -> Result<(SceneSpec, ExitCode), Failure> {
     let reader = task_reader().allowing(allowed);
-    let faults = reader.read(setup).map_err(Failure::input)?.faults;
-    for fault in &faults {
+    let task = reader.read(setup).map_err(Failure::input)?;
+    for fault in &task.faults {
         say(fault);
     }
-    let mut app = headless_app_with(plugins);
-    app.insert_resource(AllowedFolders(allowed.to_vec()));
-    app.world_mut()
-        .write_command(SceneCommand::Load(setup.to_owned()));
-    let result = match faults.is_empty() {
+    let result = match task.faults.is_empty() {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(WRONG_INPUT),
     };
-    Ok((app, result))
+    Ok((task.scene, result))
+}
+
+/// Puts a scene on the table in the first tick.
+fn put_on_table(scene: SceneSpec, app: &mut App) {
+    app.world_mut()
+        .write_command(SceneCommand::Set(Box::new(scene)));
 }
 
 /// Performs a scenario until it is done or has failed.
@@ -170,8 +173,8 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         scenario.begin_with(&true_path(setup));
     }
     let robot = args.robot.plugin()?;
-    let layout = robot.description.map(|robot| robot.layout);
-    let checked = scenario.check_for(&layout.unwrap_or_default());
+    let layout = robot.description.as_ref().map(|robot| &robot.layout);
+    let checked = scenario.check_for(layout.unwrap_or(RobotLayout::baxter()));
     checked.map_err(Failure::input)?;
     let mut program = Program::new(&scenario, |file| args.read_faultless(file), args.seed)
         .map_err(Failure::input)?;
@@ -179,7 +182,9 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         program.limit = ticks(seconds);
     }
 
-    let mut app = headless_app_with(recording(plugins(args)?, args)?);
+    let hand_pictures = args.hand_cameras.of(&robot)?;
+    let plugins = recording(plugins(args, robot)?, args, hand_pictures);
+    let mut app = headless_app_with(plugins);
     let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program))
         .add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
@@ -263,19 +268,23 @@ fn stops_the_robot(fact: &SimFact) -> bool {
     }
 }
 
-/// The simulator with the robot and the engine that were asked for.
-fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
+/// The simulator with this robot, and the engine that was asked for.
+fn plugins(args: &RunArgs, robot: RobotPlugin) -> Result<PluginGroupBuilder, Failure> {
     let settings = headless_settings(&args.engine, args.script.as_deref())?;
     Ok(TabletopSimPlugins
         .build()
-        .set(args.robot.plugin()?)
+        .set(robot)
         .set(ScriptPlugin { settings }))
 }
 
 /// The same with a recorder, if one is asked for.
-fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
+fn recording(
+    plugins: PluginGroupBuilder,
+    args: &RunArgs,
+    hand_pictures: HandPictures,
+) -> PluginGroupBuilder {
     let Some(folder) = args.record.clone() else {
-        return Ok(plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin));
+        return plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin);
     };
     let mut header = serde_json::Map::new();
     let scenario = args.scenario.as_deref().map(true_path);
@@ -285,12 +294,12 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> Result<PluginGroupB
         header.insert("setup".into(), text(true_path(setup)));
     }
     header.insert("seed".into(), json!(args.seed));
-    Ok(plugins.set(RecorderPlugin {
+    plugins.set(RecorderPlugin {
         folder,
         header,
-        hand_pictures: args.hand_cameras.of(&args.robot.plugin()?)?,
+        hand_pictures,
         ..default()
-    }))
+    })
 }
 
 impl RunArgs {
@@ -299,20 +308,15 @@ impl RunArgs {
         read_faultless_task(file, &self.allowed.folders)
     }
 
-    /// Gives scripts the task of a recording, with the objects of a task file if there is one.
-    fn tell_task(&self, app: &mut App, setup: Option<&Path>) -> Result<(), Failure> {
+    /// Gives scripts the task of a recording, with the objects of a scene if there is one.
+    fn tell_task(&self, app: &mut App, scene: Option<&SceneSpec>) -> Result<(), Failure> {
         let Some(recording) = &self.task else {
             return Ok(());
         };
         let (task, requirements) = read(recording, &Furniture::default())?;
-        let binding = match setup {
-            Some(setup) => {
-                let scene = task_reader()
-                    .allowing(&self.allowed.folders)
-                    .read(setup)
-                    .map_err(Failure::input)?
-                    .scene;
-                let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+        let binding = match scene {
+            Some(scene) => {
+                let objects = assemble(scene, &mut IdAllocator::default()).objects;
                 Some(task.bind(&requirements, &objects).map_err(Failure::run)?)
             }
             None => None,
@@ -389,4 +393,27 @@ fn write_final_state(app: &App, output: &Output) -> Result<(), Failure> {
     let mut csv = Vec::new();
     final_state::write_state(app.world(), &mut csv).map_err(Failure::run)?;
     output.write(&csv)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use tabletop::{core::ObjectIndex, storage::TemporaryFolder};
+
+    use super::*;
+
+    #[test]
+    fn a_task_file_is_read_once_before_the_first_tick() {
+        let folder = TemporaryFolder::new("tabletop-run-once").unwrap();
+        let setup = folder.path().join("setup.xml");
+        let text = tabletop::shipped::read_text(Path::new(DEFAULT_SETUP)).unwrap();
+        fs::write(&setup, text).unwrap();
+        let (scene, _) = scene_of(&setup, &[]).map_err(|_| "it has faults").unwrap();
+        fs::remove_file(&setup).unwrap();
+        let mut app = headless_app_with(TabletopSimPlugins);
+        put_on_table(scene, &mut app);
+        app.step(1);
+        assert_eq!(app.world().resource::<ObjectIndex>().iter().count(), 2);
+    }
 }

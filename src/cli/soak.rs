@@ -3,7 +3,7 @@
 use std::{fs, path::Path, process::ExitCode, time::Instant};
 
 use clap::Args;
-use tabletop::{core::TICKS_PER_SECOND, soak::Round, storage::TemporaryFolder};
+use tabletop::{core::TICKS_PER_SECOND, run_episodes, soak::Round, storage::TemporaryFolder};
 
 use super::{
     Failure,
@@ -32,7 +32,7 @@ pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
     let rounds = (args.hours / round_hours).ceil().max(1.0) as u64;
     let mut said = Instant::now();
     let mut memory = Vec::new();
-    for number in 0..rounds {
+    let run = |number| {
         let temporary = TemporaryFolder::new("tabletop-soak").map_err(Failure::run)?;
         let round = Round {
             seed: args.seed.wrapping_add(number),
@@ -43,7 +43,9 @@ pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
             Failure::run(format!(
                 "{fault}; to see it: tabletop soak --seed {seed} --hours 0"
             ))
-        })?;
+        })
+    };
+    run_episodes(0..rounds, 1, run, |number, ()| {
         memory.push(memory_now());
         if said.elapsed().as_secs() >= 60 || number + 1 == rounds {
             said = Instant::now();
@@ -55,7 +57,7 @@ pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
                 memory_now() >> 20,
             ));
         }
-    }
+    })?;
     match growth(&memory) {
         growth if growth > MOST_GROWTH => Err(Failure::run(format!(
             "memory has grown by {} MB; to see it, repeat the command",

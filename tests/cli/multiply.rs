@@ -218,6 +218,46 @@ fn the_light_differs_and_nothing_else_does() {
 }
 
 #[test]
+fn another_robot_shows_it() {
+    const PANDA: &str = "shipped:assets/panda/robot.ron";
+    // Blocks that fit between its fingers.
+    let scenario = place("multiply_panda.ron");
+    let text = r#"(
+        setup: "shipped:tablesetup/panda-stack.xml",
+        steps: [
+            WaitUntilRest(3), Start,
+            Grasp("Blue"), MoveBy((0, 0, 2)), MoveTo((2, -2.5, 2)), MoveTo((2, -2.5, 0.8)), WaitUntilThere(1), Release,
+            WaitUntilRest(3), Finish,
+        ],
+    )"#;
+    fs::write(&scenario, text).unwrap();
+    let [demo, out] = ["multiply_panda", "multiply_panda_out"].map(place);
+    let [scenario, demo] = [&scenario, &demo].map(|path| path.to_str().unwrap());
+    let output = tabletop(&["run", scenario, "--record", demo]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    multiply(demo, &out, &["--count", "2", "--robot", PANDA]);
+    for number in ["0000", "0001"] {
+        let joints = fs::read_to_string(out.join(number).join("joints.csv")).unwrap();
+        assert!(joints.contains(",panda_joint1,"), "{joints:.200}");
+    }
+    replays_to_the_same_bytes(out.join("0000"));
+    // Those of another robot are others.
+    let output = tabletop(&["multiply", &demo, "--robot", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = stderr(&output);
+    assert!(told.contains("made with other options"), "{told}");
+}
+
+#[test]
+fn a_recording_in_the_place_of_a_robot_is_named() {
+    let demo = record_shipped("stack_three", "multiply_swapped");
+    let output = tabletop(&["multiply", "--robot", &demo, "--out", "nowhere"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = stderr(&output);
+    assert!(told.contains("a recording comes before --robot"), "{told}");
+}
+
+#[test]
 fn the_robot_shows_it_with_the_pictures_of_its_hands() {
     let demo = record_shipped("stack_three", "multiply_hand_cameras");
     let out = place("multiply_hand_cameras_out");

@@ -33,7 +33,7 @@ pub struct DrawnFigure {
 }
 
 /// A solid in the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DrawnSolid {
     /// Pose of its centre in the world.
     pub pose: Pose,
@@ -68,7 +68,7 @@ impl DrawnSolid {
     pub fn of(body: Pose, primitive: &Primitive, object: u32) -> Self {
         Self {
             pose: body * primitive.pose,
-            solid: primitive.solid,
+            solid: primitive.solid.clone(),
             color: primitive.color,
             object,
         }

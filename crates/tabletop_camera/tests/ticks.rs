@@ -101,10 +101,10 @@ fn expected_of(scene: &Scene, table: &Table) -> Picture {
 }
 
 fn with_cube_at(location: Vec3, table: &Table) -> Picture {
-    let cube = red_cube().drawn()[0];
+    let cube = &red_cube().drawn()[0];
     let solids = [
         DrawnSolid::of_table(table, 1),
-        DrawnSolid::of(Pose::at(location), &cube, 2),
+        DrawnSolid::of(Pose::at(location), cube, 2),
     ];
     expected(&solids, table)
 }
@@ -195,7 +195,7 @@ fn an_object_that_becomes_another_or_goes_is_drawn_so() {
     let location = Vec3::new(-1.0 + STEP * 7.0, 0.0, 0.5);
     let empty = DrawnSolid::of_table(&table, 1);
     let drawn = DrawnSolid::of(Pose::at(location), &ball.drawn()[0], 2);
-    assert!(with_ball.picture == expected(&[empty, drawn], &table));
+    assert!(with_ball.picture == expected(&[empty.clone(), drawn], &table));
     assert!(without.picture == expected(&[empty], &table));
     assert_eq!(without.shown.len(), 1);
 }

@@ -114,8 +114,8 @@ pub use robot::{
     Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, GripperKind,
     GripperLayout, HandCameraLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole,
     JointState, LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame,
-    MANUAL_SPEED, Markers, Obstacle, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode,
-    WIDEST_GRIP, snake_case,
+    MANUAL_SPEED, Markers, NameError, Obstacle, Robot, RobotContact, RobotJoint, RobotLayout,
+    RobotMode, WIDEST_GRIP, snake_case,
 };
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};

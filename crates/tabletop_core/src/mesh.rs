@@ -101,8 +101,8 @@ impl MeshSpec {
     }
 
     /// Its surface.
-    pub fn surface(&self) -> Polyhedron {
-        self.0.surface
+    pub fn surface(&self) -> &Polyhedron {
+        &self.0.surface
     }
 
     /// The convex solids that fill it.
@@ -156,7 +156,7 @@ mod tests {
         let cube = Polyhedron::frustum(1.0, 1.0, 1.0, 4);
         let cube = Polyhedron::new(cube.corners().to_vec(), cube.triangles().to_vec());
         let cube = cube.unwrap_or_else(|error| panic!("{error}"));
-        MeshSpec::new("stl/my cup.v2.stl".into(), 0.1, cube, vec![cube])
+        MeshSpec::new("stl/my cup.v2.stl".into(), 0.1, cube.clone(), vec![cube])
             .unwrap_or_else(|error| panic!("{error}"))
     }
 

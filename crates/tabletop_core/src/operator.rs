@@ -55,7 +55,8 @@ impl FromStr for Operator {
             return Ok(Self::Hand(hand));
         }
         if let Some(limb) = text.strip_prefix(LIMB) {
-            return Ok(Self::Limb(LimbName::new(limb)));
+            let limb = LimbName::new(limb).map_err(|_| OperatorError(text.to_owned()))?;
+            return Ok(Self::Limb(limb));
         }
         match text.strip_prefix(OBJECT) {
             Some(id) => Ok(Self::Object(id.to_owned())),
@@ -72,7 +73,7 @@ mod tests {
     fn operators_read_back() {
         for operator in [
             Operator::Hand(Hand::Left),
-            Operator::Limb(LimbName::new("left")),
+            Operator::Limb(LimbName::from_static("left")),
             Operator::Object("robot#1".into()),
         ] {
             assert_eq!(operator.to_string().parse(), Ok(operator));

@@ -13,7 +13,7 @@ pub use layout::{
 };
 pub use layout_file::{LayoutError, LayoutFile};
 pub use name::snake_case;
-pub use name::{JointName, LimbName};
+pub use name::{JointName, LimbName, NameError};
 pub use obstacle::Obstacle;
 
 use bevy::prelude::*;

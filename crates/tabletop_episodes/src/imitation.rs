@@ -8,7 +8,6 @@ use tabletop_core::{
     WriteCommand as _,
 };
 use tabletop_geometry::Pose;
-use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
     LimbOrder, Piece, PlanningStage, RobotBody, Stopped, drives, is_feasible, scatter,
 };
@@ -45,14 +44,6 @@ impl PlanningStage for AppStage<'_> {
         self.observer.look(self.app.world_mut());
         Ok(())
     }
-}
-
-/// The Baxter of the report in front of a table, as planning needs it.
-///
-/// # Errors
-/// Never: a test reads its description.
-pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
-    RobotBody::new(RobotLayout::baxter(), baxter()?, table)
 }
 
 /// Number of arrangements that are tried until one allows the task.
@@ -170,7 +161,7 @@ pub fn scattered(
     let low = |solid: &PlacedSolid| solid.heights()[0] < highest + 0.3;
     let kept: Vec<_> = kept
         .iter()
-        .copied()
+        .cloned()
         .chain(arms.into_iter().filter(low))
         .collect();
     let seed = Random::new(seed).bits();

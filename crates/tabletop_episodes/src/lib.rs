@@ -1,9 +1,13 @@
 //! Whole episodes, each in a world of its own: imitation of a recording, multiplication of a demonstration, hours of random acts.
 
 mod beginning;
+mod episodes;
 pub mod imitation;
 pub mod multiplication;
+mod robot_body;
 pub mod shown_task;
 pub mod soak;
 
 pub use beginning::scene_at_beginning;
+pub use episodes::run_episodes;
+pub use robot_body::robot_body;

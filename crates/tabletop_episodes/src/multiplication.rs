@@ -19,35 +19,23 @@ use serde_json::json;
 use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_core::{
     HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
-    WriteCommand as _,
+    Table, WriteCommand as _,
 };
 use tabletop_kinematics::ModelError;
 use tabletop_planner::{PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{
     HandPictures, RecorderError, RecorderPlugin, RecordingReader, finish_recording,
 };
+use tabletop_robot::{DescriptionSource, RobotPlugin};
 use tabletop_storage::{Storage, Symlinks, read_regular_file};
 use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
 
 use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
-use crate::{
-    beginning::scene_at_beginning,
-    imitation::{AppStage, baxter_body},
-};
+use crate::{beginning::scene_at_beginning, imitation::AppStage, robot_body::robot_body};
 use fingerprint::Fingerprint;
 use performance::perform;
 use variation::Varying;
-
-/// The demonstrator of the new demonstrations.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Demonstrator {
-    /// The hand of the demonstration.
-    #[default]
-    Hand,
-    /// The robot.
-    Robot,
-}
 
 /// A demonstration, ready to be multiplied.
 #[derive(Debug)]
@@ -56,13 +44,20 @@ pub struct Multiplication {
     task: Task,
     requirements: Requirements,
     scene: SceneSpec,
-    /// The robot, if it demonstrates.
-    body: Option<RobotBody>,
+    /// The robot, if it demonstrates instead of the hand.
+    robot: Option<RobotDemonstrator>,
     variation: Variation,
     hand_pictures: HandPictures,
     seed: u64,
     /// That of the recording's files.
     recorded: Fingerprint,
+}
+
+/// A robot that demonstrates.
+#[derive(Debug)]
+struct RobotDemonstrator {
+    plugin: RobotPlugin,
+    body: RobotBody,
 }
 
 /// The result of making one demonstration.
@@ -118,13 +113,13 @@ const TRIES: u64 = 20;
 const SETTLING: u64 = 30;
 
 impl Multiplication {
-    /// Reads a recording whose task is to be demonstrated again.
+    /// Reads a recording whose task is to be demonstrated again, by the robot if there is one, otherwise by the hand.
     ///
     /// # Errors
     /// It cannot be read, or shows no task.
     pub fn of(
         recording: &RecordingReader,
-        demonstrator: Demonstrator,
+        robot: Option<RobotPlugin>,
         variation: Variation,
         seed: u64,
     ) -> Result<Self, MultiplyError> {
@@ -135,16 +130,13 @@ impl Multiplication {
         }
         let requirements = Requirements::read_for(&task, recording.folder())?;
         let scene = scene_at_beginning(recording.session()).ok_or(MultiplyError::NoScene)?;
-        let body = match demonstrator {
-            Demonstrator::Hand => None,
-            Demonstrator::Robot => Some(baxter_body(&scene.table)?),
-        };
+        let robot = robot.map(|plugin| RobotDemonstrator::new(plugin, &scene.table));
         Ok(Self {
             shown,
             task,
             requirements,
             scene,
-            body,
+            robot: robot.transpose()?,
             variation,
             hand_pictures: HandPictures::None,
             seed,
@@ -159,8 +151,8 @@ impl Multiplication {
     pub fn with_scene(mut self, scene: SceneSpec) -> Result<Self, MultiplyError> {
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         self.task.bind(&self.requirements, &objects)?;
-        if self.body.is_some() {
-            self.body = Some(baxter_body(&scene.table)?);
+        if let Some(robot) = &mut self.robot {
+            robot.body = robot_body(&robot.plugin, &scene.table)?;
         }
         self.scene = scene;
         Ok(self)
@@ -208,7 +200,7 @@ impl Multiplication {
             task: &self.task,
             requirements: &self.requirements,
             scene: &self.scene,
-            body: self.body.as_ref(),
+            body: self.robot.as_ref().map(|robot| &robot.body),
             variation: self.variation,
         }
     }
@@ -240,18 +232,22 @@ impl Multiplication {
             MULTIPLIED.into(),
             json!({ "seed": self.seed, "number": number, "attempt": attempt }),
         );
-        let mut app = headless_app_with(TabletopSimPlugins.build().set(RecorderPlugin {
+        let mut plugins = TabletopSimPlugins.build().set(RecorderPlugin {
             folder: folder.to_owned(),
             header,
             hand_pictures: self.hand_pictures.clone(),
             ..default()
-        }));
+        });
+        if let Some(robot) = &self.robot {
+            plugins = plugins.set(robot.plugin.clone());
+        }
+        let mut app = headless_app_with(plugins);
         let world = app.world_mut();
         let mut camera = world.resource_mut::<HeadCamera>();
         camera.mount = mount;
         camera.light = light;
         world.write_command(SceneCommand::Set(Box::new(scene)));
-        if self.body.is_some() {
+        if self.robot.is_some() {
             world.write_command(RobotCommand::Show(true));
         }
         app.step(SETTLING);
@@ -262,19 +258,37 @@ impl Multiplication {
         Ok(shown)
     }
 
-    /// A fingerprint of all that decides the demonstrations besides variation and seed: the recording, its requirements, the objects.
+    /// A fingerprint of all that decides the demonstrations besides variation and seed: the recording, its requirements, the objects, and a robot
+    /// other than the one inside the program.
     pub fn fingerprint(&self) -> String {
         let scene = serde_json::to_vec(&self.scene).unwrap_or_default();
-        self.recorded.and(&scene).to_string()
+        let mut found = self.recorded.and(&scene);
+        if let Some(source) = self.robot.as_ref().and_then(RobotDemonstrator::source) {
+            let layout = source.layout.as_deref().unwrap_or_default();
+            found = found.and(source.urdf.as_bytes()).and(layout.as_bytes());
+        }
+        found.to_string()
     }
 
     fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, PlanFailure)> {
-        let Some(body) = &self.body else {
+        let Some(RobotDemonstrator { body, .. }) = &self.robot else {
             return perform(app, &self.shown, &self.task, binding);
         };
         let mut stage = AppStage::new(app);
         let imitation = imitate(&mut stage, body, &self.task, binding, seed, |_| {});
         imitation.failure.map_or(Ok(()), Err)
+    }
+}
+
+impl RobotDemonstrator {
+    fn new(plugin: RobotPlugin, table: &Table) -> Result<Self, ModelError> {
+        let body = robot_body(&plugin, table)?;
+        Ok(Self { plugin, body })
+    }
+
+    /// The files that it was read from, if it is not the robot inside the program.
+    fn source(&self) -> Option<&DescriptionSource> {
+        self.plugin.description.as_ref()?.source.as_ref()
     }
 }
 

@@ -3,24 +3,29 @@
 mod nearest;
 mod recipe;
 mod regular;
+mod store;
 mod surface;
 
 pub use recipe::{MOST_SIDES, ROUND_SIDES};
 
 use std::{
-    collections::{BTreeMap, HashMap},
     fmt,
-    sync::{Mutex, PoisonError},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use bevy::prelude::*;
 
-use crate::{Bounds, Pose, polyhedron::recipe::Recipe};
+use crate::{
+    Bounds, Pose,
+    polyhedron::{recipe::Recipe, store::SharedStore},
+};
 
-/// A solid with flat faces, in its own frame. Each one is stored once for as long as the program runs: a copy is a reference, and equal
-/// solids are the same one.
-#[derive(Clone, Copy)]
-pub struct Polyhedron(&'static PolyhedronData);
+/// A solid with flat faces, in its own frame. A clone is a reference, and equal solids are the same one, in the whole program.
+#[derive(Clone)]
+pub struct Polyhedron(Arc<PolyhedronData>);
 
 /// The data of a polyhedron.
 struct PolyhedronData {
@@ -32,6 +37,12 @@ struct PolyhedronData {
     volume: f32,
     axis: Option<Vec3>,
     crease: f32,
+    /// The polyhedron that was scaled to become this one.
+    #[expect(
+        dead_code,
+        reason = "held, so that scaling it again finds this one, which is known by its number"
+    )]
+    source: Option<Polyhedron>,
 }
 
 /// The error of data that is no polyhedron.
@@ -48,16 +59,12 @@ pub enum PolyhedronError {
     NoCorner,
 }
 
-/// All polyhedra of the program.
-#[derive(Default)]
-struct PolyhedronStore {
-    count: usize,
-    /// The polyhedra by their recipes.
-    made: BTreeMap<Recipe, Polyhedron>,
-    read: HashMap<(Vec<[u32; 3]>, Vec<[u32; 3]>), Polyhedron>,
-}
+/// The polyhedra of the program by their recipes.
+static KEPT: Mutex<SharedStore<Recipe, PolyhedronData>> =
+    Mutex::new(SharedStore::new(PolyhedronData::size));
 
-static KEPT: Mutex<Option<PolyhedronStore>> = Mutex::new(None);
+/// Number of the next polyhedron.
+static NEXT: AtomicUsize = AtomicUsize::new(0);
 
 /// Cosines of the angles below which neighbouring faces form one surface: a flat one, or a round one of [`ROUND_SIDES`].
 const FLAT: f32 = 0.999_96;
@@ -87,72 +94,63 @@ impl Polyhedron {
         }
         let bits = corners
             .iter()
-            .map(|corner| corner.to_array().map(f32::to_bits))
-            .collect();
-        Ok(with_kept(|kept| {
-            let key = (bits, triangles.clone());
-            if let Some(known) = kept.read.get(&key) {
-                return *known;
-            }
-            let new = kept.keep(corners, triangles, None, FLAT);
-            kept.read.insert(key, new);
-            new
+            .map(|corner| corner.to_array().map(f32::to_bits));
+        let recipe = Recipe::Read {
+            corners: bits.collect(),
+            triangles: triangles.clone(),
+        };
+        Ok(Self::kept(recipe, || {
+            PolyhedronData::new(corners, triangles, None, FLAT)
         }))
     }
 
     /// The polyhedron stretched along its axes from its frame's origin, by factors above 0.
     #[must_use]
-    pub fn scaled(self, by: Vec3) -> Self {
+    pub fn scaled(&self, by: Vec3) -> Self {
         let recipe = Recipe::Scaled {
             of: self.0.number,
             by: by.to_array().map(f32::to_bits),
         };
-        with_kept(|kept| {
-            if let Some(known) = kept.made.get(&recipe) {
-                return *known;
-            }
+        Self::kept(recipe, || {
             let corners = self.0.corners.iter().map(|corner| *corner * by).collect();
-            let new = kept.keep(
-                corners,
-                self.0.triangles.clone(),
-                self.0.axis,
-                self.0.crease,
-            );
-            kept.made.insert(recipe, new);
-            new
+            let triangles = self.0.triangles.clone();
+            PolyhedronData {
+                source: Some(self.clone()),
+                ..PolyhedronData::new(corners, triangles, self.0.axis, self.0.crease)
+            }
         })
     }
 
-    fn made(recipe: Recipe, make: impl FnOnce() -> (Vec<Vec3>, Vec<[u32; 3]>, Vec3)) -> Self {
-        with_kept(|kept| {
-            if let Some(known) = kept.made.get(&recipe) {
-                return *known;
-            }
+    /// A round one, with this axis, if it has enough sides.
+    fn rounded(
+        recipe: Recipe,
+        sides: u32,
+        make: impl FnOnce() -> (Vec<Vec3>, Vec<[u32; 3]>, Vec3),
+    ) -> Self {
+        Self::kept(recipe, || {
             let (corners, triangles, axis) = make();
-            let (is_round, crease) = match recipe {
-                Recipe::Tapered { sides, .. } | Recipe::Ring { sides, .. } => {
-                    (sides >= ROUND_SIDES, ROUND)
-                }
-                Recipe::Wedge { .. } | Recipe::Scaled { .. } => (false, FLAT),
-            };
-            let new = kept.keep(corners, triangles, is_round.then_some(axis), crease);
-            kept.made.insert(recipe, new);
-            new
+            let axis = (sides >= ROUND_SIDES).then_some(axis);
+            PolyhedronData::new(corners, triangles, axis, ROUND)
         })
+    }
+
+    fn kept(recipe: Recipe, make: impl FnOnce() -> PolyhedronData) -> Self {
+        let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        Self(kept.get_or_make(recipe, make))
     }
 
     /// Its corners.
-    pub fn corners(self) -> &'static [Vec3] {
+    pub fn corners(&self) -> &[Vec3] {
         &self.0.corners
     }
 
     /// Its surface as triangles of corners, counterclockwise as seen from outside.
-    pub fn triangles(self) -> &'static [[u32; 3]] {
+    pub fn triangles(&self) -> &[[u32; 3]] {
         &self.0.triangles
     }
 
     /// The corners of each triangle.
-    pub fn faces(self) -> impl Iterator<Item = [Vec3; 3]> {
+    pub fn faces(&self) -> impl Iterator<Item = [Vec3; 3]> {
         let place = |corner: u32| self.0.corners[corner as usize];
         self.0
             .triangles
@@ -161,7 +159,7 @@ impl Polyhedron {
     }
 
     /// The edges of its triangles, each once, as pairs of corners.
-    pub fn edges(self) -> Vec<[usize; 2]> {
+    pub fn edges(&self) -> Vec<[usize; 2]> {
         let mut edges: Vec<_> = self
             .0
             .triangles
@@ -175,12 +173,12 @@ impl Polyhedron {
     }
 
     /// The upright cuboid around it, in its own frame.
-    pub fn bounds(self) -> Bounds {
+    pub fn bounds(&self) -> Bounds {
         self.0.bounds
     }
 
     /// The corner that lies farthest in a direction.
-    pub fn farthest(self, direction: Vec3) -> Vec3 {
+    pub fn farthest(&self, direction: Vec3) -> Vec3 {
         let corners = self.0.corners.iter().copied();
         corners
             .max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)))
@@ -188,50 +186,37 @@ impl Polyhedron {
     }
 
     /// Radius of the ball about its frame's origin that encloses it.
-    pub fn radius(self) -> f32 {
+    pub fn radius(&self) -> f32 {
         let distances = self.0.corners.iter().map(|corner| corner.length());
         distances.fold(0.0, f32::max)
     }
 
     /// Its volume in cubic units.
-    pub fn volume(self) -> f32 {
+    pub fn volume(&self) -> f32 {
         self.0.volume
     }
 
     /// The axis of its round surface, if it is meant to be round.
-    pub fn axis(self) -> Option<Vec3> {
+    pub fn axis(&self) -> Option<Vec3> {
         self.0.axis
     }
 
     /// Its number among all polyhedra of the program. It differs from run to run.
-    pub fn number(self) -> usize {
+    pub fn number(&self) -> usize {
         self.0.number
     }
 }
 
-fn with_kept<T>(act: impl FnOnce(&mut PolyhedronStore) -> T) -> T {
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    act(kept.get_or_insert_default())
-}
-
-impl PolyhedronStore {
-    fn keep(
-        &mut self,
-        corners: Vec<Vec3>,
-        triangles: Vec<[u32; 3]>,
-        axis: Option<Vec3>,
-        crease: f32,
-    ) -> Polyhedron {
-        let number = self.count;
-        self.count += 1;
+impl PolyhedronData {
+    fn new(corners: Vec<Vec3>, triangles: Vec<[u32; 3]>, axis: Option<Vec3>, crease: f32) -> Self {
         let low = corners.iter().copied().reduce(Vec3::min);
         let high = corners.iter().copied().reduce(Vec3::max);
         let six_volumes = triangles.iter().map(|triangle| {
             let [a, b, c] = triangle.map(|corner| corners[corner as usize].as_dvec3());
             a.dot(b.cross(c))
         });
-        Polyhedron(Box::leak(Box::new(PolyhedronData {
-            number,
+        Self {
+            number: NEXT.fetch_add(1, Ordering::Relaxed),
             bounds: Bounds {
                 low: low.unwrap_or_default(),
                 high: high.unwrap_or_default(),
@@ -241,7 +226,13 @@ impl PolyhedronStore {
             triangles,
             axis,
             crease,
-        })))
+            source: None,
+        }
+    }
+
+    /// Size in bytes.
+    fn size(&self) -> usize {
+        size_of::<Self>() + size_of_val(&*self.corners) + size_of_val(&*self.triangles)
     }
 }
 
@@ -266,7 +257,7 @@ impl fmt::Debug for Polyhedron {
 
 impl Bounds {
     /// The bounds of a polyhedron at a pose.
-    pub fn of_polyhedron(polyhedron: Polyhedron, at: Pose) -> Self {
+    pub fn of_polyhedron(polyhedron: &Polyhedron, at: Pose) -> Self {
         let corners = polyhedron.corners().iter().map(|corner| at * *corner);
         corners
             .map(|corner| Self::around(corner, Vec3::ZERO))
@@ -295,6 +286,33 @@ mod tests {
         };
         assert_eq!(tetrahedron(), tetrahedron());
         assert!(tetrahedron().is_ok_and(|it| (it.volume() - 1.0 / 6.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn polyhedra_that_nobody_holds_are_forgotten_and_all_others_stay_the_same() {
+        const COUNT: u16 = 20_000;
+        let size = |i: u16| 1.0 + f32::from(i) / 4096.0;
+        let read = |i| {
+            let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|corner| corner * size(i));
+            let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+            Polyhedron::new(corners.to_vec(), faces).unwrap()
+        };
+        let made = |i| {
+            [
+                Polyhedron::prism(size(i), 1.0, 32),
+                Polyhedron::ring(2.0 * size(i), size(i), 0.5, 64),
+                read(i),
+                // Nobody holds the polyhedron that is scaled.
+                Polyhedron::wedge(3.0 * size(i), size(i), 0.5, 64).scaled(Vec3::splat(2.0)),
+            ]
+        };
+        let held = made(0);
+        for i in 1..COUNT {
+            made(i);
+        }
+        assert_eq!(made(0), held);
+        let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).len();
+        assert!(kept < 10_000, "{kept}");
     }
 
     #[test]

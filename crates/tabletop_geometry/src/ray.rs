@@ -18,9 +18,9 @@ impl Primitive {
 
 impl Solid {
     /// The point where a ray enters the solid, as a factor of its direction.
-    fn entry(self, origin: Vec3, direction: Vec3) -> Option<f32> {
+    fn entry(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
         // The points where the straight line enters and leaves. It misses the solid if it leaves before it enters.
-        let (enter, leave) = match self {
+        let (enter, leave) = match *self {
             Self::Cuboid(span) => {
                 let half = span / 2.0;
                 let x = between(origin.x, direction.x, half.x)?;
@@ -34,7 +34,7 @@ impl Solid {
                 both(side, caps)
             }
             Self::Ball(radius) => within(origin, direction, radius)?,
-            Self::Polyhedron(polyhedron) => return polyhedron.entry(origin, direction),
+            Self::Polyhedron(ref polyhedron) => return polyhedron.entry(origin, direction),
         };
         (enter <= leave && enter >= 0.0).then_some(enter)
     }
@@ -81,10 +81,10 @@ mod tests {
     };
     const BALL: Solid = Solid::Ball(1.5);
 
-    fn distance(solid: Solid, pose: Pose, origin: [f32; 3], direction: [f32; 3]) -> Option<f32> {
+    fn distance(solid: &Solid, pose: Pose, origin: [f32; 3], direction: [f32; 3]) -> Option<f32> {
         let primitive = Primitive {
             pose: Pose::IDENTITY,
-            solid,
+            solid: solid.clone(),
             color: Rgb::GRAY,
         };
         let direction = Dir3::new(direction.into()).unwrap();
@@ -102,14 +102,14 @@ mod tests {
     fn a_ray_enters_where_it_first_meets_the_surface() {
         let down = [0.0, 0.0, -1.0];
         let at_rest = Pose::IDENTITY;
-        assert_distance(distance(CUBOID, at_rest, [0.5, 1.5, 10.0], down), 7.0);
-        assert_distance(distance(CYLINDER, at_rest, [0.6, 0.0, 10.0], down), 9.2);
-        assert_distance(distance(BALL, at_rest, [0.9, 0.0, 10.0], down), 8.8);
+        assert_distance(distance(&CUBOID, at_rest, [0.5, 1.5, 10.0], down), 7.0);
+        assert_distance(distance(&CYLINDER, at_rest, [0.6, 0.0, 10.0], down), 9.2);
+        assert_distance(distance(&BALL, at_rest, [0.9, 0.0, 10.0], down), 8.8);
         let along = [0.0, 1.0, 0.0];
-        assert_distance(distance(CYLINDER, at_rest, [0.5, -9.0, 0.5], along), 7.0);
+        assert_distance(distance(&CYLINDER, at_rest, [0.5, -9.0, 0.5], along), 7.0);
         let slanted = [0.0, 1.0, -1.0];
         assert_distance(
-            distance(CUBOID, at_rest, [0.0, -6.0, 6.0], slanted),
+            distance(&CUBOID, at_rest, [0.0, -6.0, 6.0], slanted),
             32.0_f32.sqrt(),
         );
     }
@@ -124,11 +124,11 @@ mod tests {
             (CYLINDER, [0.0, 2.1, 10.0]),
             (BALL, [1.1, 1.1, 10.0]),
         ] {
-            assert_eq!(distance(solid, Pose::IDENTITY, beside, down), None);
+            assert_eq!(distance(&solid, Pose::IDENTITY, beside, down), None);
         }
         // It enters above the caps, towards the axis.
         assert_eq!(
-            distance(CYLINDER, Pose::IDENTITY, [5.0, 2.5, 0.0], [-1.0, 0.0, 0.0]),
+            distance(&CYLINDER, Pose::IDENTITY, [5.0, 2.5, 0.0], [-1.0, 0.0, 0.0]),
             None
         );
     }
@@ -137,8 +137,8 @@ mod tests {
     fn a_solid_behind_or_around_the_origin_is_not_entered() {
         for solid in [CUBOID, CYLINDER, BALL] {
             let up = [0.0, 0.0, 1.0];
-            assert_eq!(distance(solid, Pose::IDENTITY, [0.0, 0.0, 10.0], up), None);
-            assert_eq!(distance(solid, Pose::IDENTITY, [0.0; 3], up), None);
+            assert_eq!(distance(&solid, Pose::IDENTITY, [0.0, 0.0, 10.0], up), None);
+            assert_eq!(distance(&solid, Pose::IDENTITY, [0.0; 3], up), None);
         }
     }
 
@@ -147,16 +147,21 @@ mod tests {
         let pose = Pose::from_degrees(Vec3::new(5.0, 0.0, 1.0), Vec3::new(90.0, 0.0, 0.0));
         let down = [0.0, 0.0, -1.0];
         // Its long Z extent now lies along Y, its Y extent stands upright.
-        assert_distance(distance(CUBOID, pose, [5.0, 2.9, 10.0], down), 7.0);
-        assert_distance(distance(CYLINDER, pose, [5.5, 0.0, 10.0], down), 7.0);
-        assert_eq!(distance(CUBOID, pose, [0.0, 0.0, 10.0], down), None);
+        assert_distance(distance(&CUBOID, pose, [5.0, 2.9, 10.0], down), 7.0);
+        assert_distance(distance(&CYLINDER, pose, [5.5, 0.0, 10.0], down), 7.0);
+        assert_eq!(distance(&CUBOID, pose, [0.0, 0.0, 10.0], down), None);
     }
 
     #[test]
     fn a_small_thing_far_away_is_still_met() {
         let ball = Solid::Ball(0.01);
         assert_distance(
-            distance(ball, Pose::IDENTITY, [0.005, 0.0, 1000.0], [0.0, 0.0, -1.0]),
+            distance(
+                &ball,
+                Pose::IDENTITY,
+                [0.005, 0.0, 1000.0],
+                [0.0, 0.0, -1.0],
+            ),
             999.9913,
         );
     }

@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use crate::{Bounds, Polyhedron, Pose, Rgb};
 
 /// A solid: every shape consists of these in the end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Solid {
     /// A cuboid of these full extents.
     Cuboid(Vec3),
@@ -23,7 +23,7 @@ pub enum Solid {
 }
 
 /// One solid of a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Primitive {
     /// Pose of its centre in the frame of the shape.
     pub pose: Pose,
@@ -35,20 +35,20 @@ pub struct Primitive {
 
 impl Solid {
     /// Volume in cubic units.
-    pub fn volume(self) -> f32 {
+    pub fn volume(&self) -> f32 {
         use std::f32::consts::PI;
-        match self {
+        match *self {
             Self::Cuboid(span) => span.element_product(),
             Self::Cylinder { radius, yspan } => PI * radius * radius * yspan,
             Self::Ball(radius) => 4.0 / 3.0 * PI * radius * radius * radius,
-            Self::Polyhedron(polyhedron) => polyhedron.volume(),
+            Self::Polyhedron(ref polyhedron) => polyhedron.volume(),
         }
     }
 }
 
 impl Bounds {
     /// The bounds of a solid; the origin of its shape is at the given pose.
-    pub fn of_primitive(part: Primitive, at: Pose) -> Self {
+    pub fn of_primitive(part: &Primitive, at: Pose) -> Self {
         let at = at * part.pose;
         match part.solid {
             Solid::Cuboid(span) => Self::of_cuboid(span, at),
@@ -58,7 +58,7 @@ impl Bounds {
                 let across = (Vec3::ONE - axis * axis).max(Vec3::ZERO).map(f32::sqrt);
                 Self::around(at.location, axis.abs() * yspan / 2.0 + across * radius)
             }
-            Solid::Polyhedron(polyhedron) => Self::of_polyhedron(polyhedron, at),
+            Solid::Polyhedron(ref polyhedron) => Self::of_polyhedron(polyhedron, at),
         }
     }
 

@@ -213,10 +213,10 @@ fn lies_there(world: &mut World, press: &Press) -> bool {
 /// True if a point, in the frame of an object, is on the surface of a part of it, given with its pose, or inside.
 fn has_point(shape: &Shape, at: Pose, point: Vec3) -> bool {
     let solids = shape.colliding();
-    let distance = |solid: Solid, at: Pose| distance(solid, at.inverse() * point);
+    let distance = |solid: &Solid, at: Pose| distance(solid, at.inverse() * point);
     solids
         .iter()
-        .any(|solid| distance(solid.solid, at * solid.pose) < TOUCH)
+        .any(|solid| distance(&solid.solid, at * solid.pose) < TOUCH)
 }
 
 fn spec_and_pose(world: &World, object: Entity) -> Option<(ObjectSpec, Pose)> {
@@ -255,8 +255,8 @@ fn add(
 }
 
 /// Distance of a point outside a solid, in the frame of the solid.
-fn distance(solid: Solid, point: Vec3) -> f32 {
-    match solid {
+fn distance(solid: &Solid, point: Vec3) -> f32 {
+    match *solid {
         Solid::Cuboid(span) => (point.abs() - span / 2.0).max(Vec3::ZERO).length(),
         Solid::Cylinder { radius, yspan } => {
             let aside = (point.with_y(0.0).length() - radius).max(0.0);
@@ -264,7 +264,7 @@ fn distance(solid: Solid, point: Vec3) -> f32 {
             Vec2::new(aside, along).length()
         }
         Solid::Ball(radius) => (point.length() - radius).max(0.0),
-        Solid::Polyhedron(polyhedron) => polyhedron.distance_to(point),
+        Solid::Polyhedron(ref polyhedron) => polyhedron.distance_to(point),
     }
 }
 
@@ -275,11 +275,11 @@ mod tests {
     #[test]
     fn distances_are_to_the_surface() {
         let cuboid = Solid::Cuboid(Vec3::new(2.0, 4.0, 6.0));
-        assert_eq!(distance(cuboid, Vec3::new(4.0, 0.0, 7.0)), 5.0);
-        assert_eq!(distance(cuboid, Vec3::ONE), 0.0);
+        assert_eq!(distance(&cuboid, Vec3::new(4.0, 0.0, 7.0)), 5.0);
+        assert_eq!(distance(&cuboid, Vec3::ONE), 0.0);
         let (radius, yspan) = (1.0, 2.0);
         let cylinder = Solid::Cylinder { radius, yspan };
-        assert_eq!(distance(cylinder, Vec3::new(4.0, 5.0, 0.0)), 5.0);
-        assert_eq!(distance(Solid::Ball(1.0), Vec3::X * 3.0), 2.0);
+        assert_eq!(distance(&cylinder, Vec3::new(4.0, 5.0, 0.0)), 5.0);
+        assert_eq!(distance(&Solid::Ball(1.0), Vec3::X * 3.0), 2.0);
     }
 }

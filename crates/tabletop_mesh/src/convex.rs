@@ -26,22 +26,47 @@ const CONCAVITY: f32 = 0.002;
 /// Largest number of solids of a surface.
 const MOST_SOLIDS: u32 = 128;
 
-/// Decompositions of surfaces, by their numbers.
-static KNOWN: Mutex<BTreeMap<usize, Vec<Polyhedron>>> = Mutex::new(BTreeMap::new());
+/// Largest number of decompositions that are remembered, and of the triangles in them.
+const MOST_KNOWN: usize = 256;
+const MOST_KNOWN_TRIANGLES: usize = 1_000_000;
 
-/// Convex solids that fill a surface; for one that is not convex approximately: up to a sixtieth of its length is filled up or left out. Empty if
-/// it encloses nothing. Each surface is decomposed only once.
-pub fn convex_solids(surface: Polyhedron) -> Vec<Polyhedron> {
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    known
-        .entry(surface.number())
-        .or_insert_with(|| solids_of(surface))
-        .clone()
+/// A surface and the convex solids that fill it.
+struct Decomposition {
+    /// It is held, so that the same content is the same surface for as long as this is remembered.
+    surface: Polyhedron,
+    solids: Vec<Polyhedron>,
 }
 
-fn solids_of(surface: Polyhedron) -> Vec<Polyhedron> {
+/// The latest decompositions, by the numbers of their surfaces.
+static KNOWN: Mutex<BTreeMap<usize, Decomposition>> = Mutex::new(BTreeMap::new());
+
+/// Convex solids that fill a surface; for one that is not convex approximately: up to a sixtieth of its length is filled up or left out. Empty if
+/// it encloses nothing. The latest surfaces are decomposed only once.
+pub fn convex_solids(surface: &Polyhedron) -> Vec<Polyhedron> {
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = known
+        .entry(surface.number())
+        .or_insert_with(|| Decomposition {
+            surface: surface.clone(),
+            solids: solids_of(surface),
+        });
+    let solids = found.solids.clone();
+    while known.len() > MOST_KNOWN || triangles_in(&known) > MOST_KNOWN_TRIANGLES {
+        known.pop_first();
+    }
+    solids
+}
+
+fn triangles_in(known: &BTreeMap<usize, Decomposition>) -> usize {
+    let polyhedra = known
+        .values()
+        .flat_map(|known| known.solids.iter().chain([&known.surface]));
+    polyhedra.map(|known| known.triangles().len()).sum()
+}
+
+fn solids_of(surface: &Polyhedron) -> Vec<Polyhedron> {
     if let Some(hull) = hull(surface.corners().to_vec())
-        && is_filled(surface, hull)
+        && is_filled(surface, &hull)
     {
         return vec![hull];
     }
@@ -53,7 +78,7 @@ fn solids_of(surface: Polyhedron) -> Vec<Polyhedron> {
     }
 }
 
-fn decompose(surface: Polyhedron) -> Vec<Polyhedron> {
+fn decompose(surface: &Polyhedron) -> Vec<Polyhedron> {
     let parameters = VHACDParameters {
         resolution: CELLS,
         concavity: CONCAVITY,
@@ -78,7 +103,7 @@ fn hull(corners: Vec<Vec3>) -> Option<Polyhedron> {
 }
 
 /// True if a surface is that of its hull.
-fn is_filled(surface: Polyhedron, hull: Polyhedron) -> bool {
+fn is_filled(surface: &Polyhedron, hull: &Polyhedron) -> bool {
     let span = hull.bounds().high - hull.bounds().low;
     let tolerance = FLATNESS * span.max_element();
     let is_convex = surface.faces().all(|[a, b, c]| {
@@ -105,7 +130,7 @@ mod tests {
     fn a_convex_mesh_is_one_solid() {
         for sides in [3, 6, 32] {
             let frustum = Polyhedron::frustum(0.5, 1.0, 2.0, sides);
-            let solids = convex_solids(frustum);
+            let solids = convex_solids(&frustum);
             assert_eq!(solids.len(), 1);
             assert!((volume(&solids) / frustum.volume() - 1.0).abs() < 1e-3);
         }
@@ -114,7 +139,7 @@ mod tests {
     #[test]
     fn a_ring_stays_open() {
         let ring = Polyhedron::ring(1.0, 0.6, 0.5, 32);
-        let solids = convex_solids(ring);
+        let solids = convex_solids(&ring);
         assert!(solids.len() > 4, "{solids:?}");
         let inside = |x, y| {
             let point = Vec3::new(x, y, 0.0);
@@ -126,7 +151,7 @@ mod tests {
             assert!(inside(0.8 * cos, 0.8 * sin), "the ring at {angle}");
         }
         assert!((volume(&solids) / ring.volume() - 1.0).abs() < 0.15);
-        assert_eq!(convex_solids(ring), solids);
+        assert_eq!(convex_solids(&ring), solids);
     }
 
     #[test]
@@ -134,6 +159,16 @@ mod tests {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let sheet = Polyhedron::new(corners, vec![[0, 1, 2]]);
         let sheet = sheet.unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(convex_solids(sheet), []);
+        assert_eq!(convex_solids(&sheet), []);
+    }
+
+    #[test]
+    fn only_the_latest_decompositions_are_remembered() {
+        for i in 0..20_000_u16 {
+            let frustum = Polyhedron::frustum(0.5, 1.0, 2.0 + f32::from(i) / 4096.0, 4);
+            assert_eq!(convex_solids(&frustum).len(), 1);
+        }
+        let known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        assert!(known.len() <= MOST_KNOWN, "{}", known.len());
     }
 }

@@ -38,7 +38,7 @@ pub type Triangle = [Vec3; 3];
 pub fn mesh(file: &str, bytes: &[u8], scale: f32) -> Result<MeshSpec, MeshFileError> {
     let surface = surface(bytes)?;
     let by = Vec3::splat(scale);
-    let solids = convex_solids(surface);
+    let solids = convex_solids(&surface);
     let solids = solids.iter().map(|solid| solid.scaled(by)).collect();
     Ok(MeshSpec::new(
         file.to_owned(),

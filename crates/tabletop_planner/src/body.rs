@@ -45,7 +45,7 @@ pub struct LimbBody {
 }
 
 /// A solid that is rigidly connected with what a joint of a limb turns.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct CarriedSolid {
     link: usize,
     joint: usize,
@@ -55,7 +55,7 @@ struct CarriedSolid {
 }
 
 /// A solid of a link, with its pose.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct LinkSolid {
     pub link: usize,
     pub solid: PlacedSolid,
@@ -181,7 +181,7 @@ impl RobotBody {
                 link: number,
                 joint: count - 1,
                 pose: in_units(frame) * *pose,
-                solid: *solid,
+                solid: solid.clone(),
             });
             limb.solids.extend(solids);
         }
@@ -230,7 +230,7 @@ impl RobotBody {
             solids
                 .map(|(pose, solid)| PlacedSolid {
                     pose: frame * *pose,
-                    solid: *solid,
+                    solid: solid.clone(),
                 })
                 .collect()
         });
@@ -276,7 +276,7 @@ impl RobotBody {
             link: part.link,
             solid: PlacedSolid {
                 pose: frames[part.joint] * part.pose,
-                solid: part.solid,
+                solid: part.solid.clone(),
             },
         }));
     }

@@ -117,7 +117,7 @@ impl<'a> Clearance<'a> {
             .iter()
             .map(|solid| PlacedSolid {
                 pose: grip * solid.pose,
-                solid: solid.solid,
+                solid: solid.solid.clone(),
             })
             .collect();
         self
@@ -163,7 +163,7 @@ impl<'a> Clearance<'a> {
             .iter()
             .map(|solid| PlacedSolid {
                 pose: end_effector * solid.pose,
-                solid: solid.solid,
+                solid: solid.solid.clone(),
             })
             .collect();
         let leans = |upright: Quat| lean(end_effector.rotation * upright) > LEAN;

@@ -46,7 +46,7 @@ pub(crate) fn free_spots(
         .iter()
         .filter(|(other, _)| *other != id)
         .flat_map(|(_, other)| other.solids())
-        .chain(kept.iter().copied())
+        .chain(kept.iter().cloned())
         .collect();
     let steps = |from: f32, to: f32| {
         let count = ((to - from) / GRID).max(0.0) as u16;

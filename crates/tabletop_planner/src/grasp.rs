@@ -145,7 +145,7 @@ fn yaws(solids: &[PlacedSolid]) -> Vec<f32> {
             let level: Vec<_> = axes.into_iter().filter(|axis| level(*axis)).collect();
             level.into_iter().map(angle).collect()
         }
-        Solid::Polyhedron(polyhedron) => match polyhedron.axis() {
+        Solid::Polyhedron(ref polyhedron) => match polyhedron.axis() {
             Some(axis) => match first.pose.rotation * axis {
                 axis if level(axis) => vec![angle(axis) + FRAC_PI_2],
                 _ => around(8),

@@ -65,7 +65,7 @@ pub fn scatter(
                 .flat_map(|&piece| &pieces[piece].solids)
                 .map(|solid| PlacedSolid {
                     pose: motion * solid.pose,
-                    solid: solid.solid,
+                    solid: solid.solid.clone(),
                 })
                 .collect();
             let reach = |solid: &PlacedSolid, way: Vec3| solid.farthest(way).dot(way);

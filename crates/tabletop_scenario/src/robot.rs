@@ -306,7 +306,7 @@ mod tests {
 
     #[test]
     fn a_position_out_of_limits_is_a_fault() {
-        let step = |joint: &str, at| RobotStep::Set(vec![(JointName::new(joint), at)]);
+        let step = |joint: &str, at| RobotStep::Set(vec![(JointName::new(joint).unwrap(), at)]);
         let fault = |step: RobotStep| step.command(RobotLayout::baxter()).unwrap_err();
         assert_eq!(
             fault(step("LeftE1", 3.0)),

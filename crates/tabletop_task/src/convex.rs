@@ -4,7 +4,7 @@ use bevy::math::{Vec2, Vec3, Vec3Swizzles as _};
 use tabletop_geometry::{Bounds, Pose, Primitive, Solid};
 
 /// A convex solid with its pose, in the table's frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PlacedSolid {
     /// The pose of its centre.
     pub pose: Pose,
@@ -17,7 +17,7 @@ impl PlacedSolid {
     pub fn of(primitive: &Primitive, body: Pose) -> Self {
         Self {
             pose: body * primitive.pose,
-            solid: primitive.solid,
+            solid: primitive.solid.clone(),
         }
     }
 
@@ -31,7 +31,7 @@ impl PlacedSolid {
                 Vec3::new(across.x, yspan / 2.0 * d.y.signum(), across.y)
             }
             Solid::Ball(radius) => d.normalize_or_zero() * radius,
-            Solid::Polyhedron(polyhedron) => polyhedron.farthest(d),
+            Solid::Polyhedron(ref polyhedron) => polyhedron.farthest(d),
         };
         self.pose * point
     }
@@ -51,7 +51,7 @@ impl PlacedSolid {
             Solid::Cuboid(span) => span.length() / 2.0,
             Solid::Cylinder { radius, yspan } => radius.hypot(yspan / 2.0),
             Solid::Ball(radius) => radius,
-            Solid::Polyhedron(polyhedron) => polyhedron.radius(),
+            Solid::Polyhedron(ref polyhedron) => polyhedron.radius(),
         }
     }
 
@@ -61,31 +61,37 @@ impl PlacedSolid {
     }
 
     /// The same solid, made thinner by this length on all sides.
-    pub fn shrunk(mut self, by: f32) -> Self {
+    pub fn shrunk(&self, by: f32) -> Self {
         let less = |extent: f32| (extent - 2.0 * by).max(extent * 0.1);
-        self.solid = match self.solid {
+        let mut pose = self.pose;
+        let solid = match self.solid {
             Solid::Cuboid(span) => Solid::Cuboid(span.map(less)),
             Solid::Cylinder { radius, yspan } => Solid::Cylinder {
                 radius: less(2.0 * radius) / 2.0,
                 yspan: less(yspan),
             },
             Solid::Ball(radius) => Solid::Ball(less(2.0 * radius) / 2.0),
-            Solid::Polyhedron(polyhedron) => {
+            Solid::Polyhedron(ref polyhedron) => {
                 let Bounds { low, high } = polyhedron.bounds();
                 let (middle, span) = (low.midpoint(high), high - low);
                 let factors = span.map(less) / span.max(Vec3::splat(f32::MIN_POSITIVE));
                 // About its middle, not about the origin of its frame.
-                self.pose.location += self.pose.rotation * (middle - middle * factors);
+                pose.location += pose.rotation * (middle - middle * factors);
                 Solid::Polyhedron(polyhedron.scaled(factors.max(Vec3::splat(0.1))))
             }
         };
-        self
+        Self { pose, solid }
     }
 
     /// The same solid, moved.
-    pub fn moved(mut self, by: Vec3) -> Self {
-        self.pose.location += by;
-        self
+    pub fn moved(&self, by: Vec3) -> Self {
+        Self {
+            pose: Pose {
+                location: self.pose.location + by,
+                ..self.pose
+            },
+            solid: self.solid.clone(),
+        }
     }
 
     /// The vector from the other solid's nearest point to this one's; zero if they overlap.
@@ -157,7 +163,7 @@ impl PlacedSolid {
                 let (b, c) = (origin.dot(ray), origin.length_squared() - radius * radius);
                 return c <= 0.0 || (b < 0.0 && b * b >= c * ray.length_squared());
             }
-            Solid::Polyhedron(polyhedron) => {
+            Solid::Polyhedron(ref polyhedron) => {
                 return polyhedron.contains(origin) || polyhedron.entry(origin, ray).is_some();
             }
         };

@@ -168,7 +168,7 @@ fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<CommonAxis> {
         let own = match solid.solid {
             Solid::Cylinder { .. } => Some(solid.pose.rotation * Vec3::Y),
             Solid::Ball(_) => (solid.pose.location - centre).try_normalize(),
-            Solid::Polyhedron(polyhedron) => Some(solid.pose.rotation * polyhedron.axis()?),
+            Solid::Polyhedron(ref polyhedron) => Some(solid.pose.rotation * polyhedron.axis()?),
             Solid::Cuboid(_) => return None,
         };
         axis = axis.or(own);
@@ -180,7 +180,7 @@ fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<CommonAxis> {
         let across = (solid.pose.location - centre).cross(axis).length();
         let is_along = match solid.solid {
             Solid::Cylinder { .. } => (solid.pose.rotation * Vec3::Y).cross(axis).length() < 1e-3,
-            Solid::Polyhedron(polyhedron) => polyhedron
+            Solid::Polyhedron(ref polyhedron) => polyhedron
                 .axis()
                 .is_some_and(|own| (solid.pose.rotation * own).cross(axis).length() < 1e-3),
             Solid::Ball(_) | Solid::Cuboid(_) => true,

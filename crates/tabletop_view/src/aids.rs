@@ -170,7 +170,7 @@ fn draw_sections(
             continue;
         }
         for primitive in &filled.0 {
-            let cut = plane.cut(primitive.solid, Pose::from(place) * primitive.pose);
+            let cut = plane.cut(&primitive.solid, Pose::from(place) * primitive.pose);
             let back_to_start = cut.first().copied();
             gizmos.linestrip(cut.into_iter().chain(back_to_start), Color::BLACK);
         }

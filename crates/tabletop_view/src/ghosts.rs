@@ -60,10 +60,10 @@ fn show_ghosts(
             let surface = Surface::translucent(primitive.color, Ghost::OPACITY);
             commands.spawn((
                 GhostSolid,
-                Mesh3d(looks.mesh(primitive.solid, &mut meshes)),
+                Mesh3d(looks.mesh(&primitive.solid, &mut meshes)),
                 MeshMaterial3d(surfaces.add(surface)),
                 Transform::from(ghost.pose * primitive.pose)
-                    .with_scale(mesh::scale_of(primitive.solid)),
+                    .with_scale(mesh::scale_of(&primitive.solid)),
             ));
         }
     }

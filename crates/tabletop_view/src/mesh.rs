@@ -30,8 +30,8 @@ pub(crate) fn unit_ball() -> Mesh {
 }
 
 /// The scale that stretches the unit mesh of its kind to this solid.
-pub(crate) fn scale_of(solid: Solid) -> Vec3 {
-    match solid {
+pub(crate) fn scale_of(solid: &Solid) -> Vec3 {
+    match *solid {
         Solid::Cuboid(span) => span,
         Solid::Cylinder { radius, yspan } => Vec3::new(radius, yspan, radius),
         Solid::Ball(radius) => Vec3::splat(radius),
@@ -134,7 +134,7 @@ mod tests {
             let (positions, _) = positions_and_normals(&mesh);
             let farthest = positions
                 .into_iter()
-                .map(|position| (position * scale_of(solid)).abs())
+                .map(|position| (position * scale_of(&solid)).abs())
                 .fold(Vec3::ZERO, Vec3::max);
             assert!((farthest * 2.0 - extents).length() < 1e-4, "{farthest}");
         }

@@ -8,8 +8,8 @@ use tabletop_geometry::Solid;
 use crate::mesh::SIDES;
 
 /// The corners of a solid in its own frame. A ball has none.
-pub(crate) fn corners(solid: Solid) -> Vec<Vec3> {
-    match solid {
+pub(crate) fn corners(solid: &Solid) -> Vec<Vec3> {
+    match *solid {
         Solid::Cuboid(span) => (0..8)
             .map(|corner| {
                 let side = |bit: u8| if corner & bit == 0 { -0.5 } else { 0.5 };
@@ -19,14 +19,14 @@ pub(crate) fn corners(solid: Solid) -> Vec<Vec3> {
         Solid::Cylinder { radius, yspan } => rim(radius)
             .flat_map(|point| [-0.5, 0.5].map(|end| point.with_y(yspan * end)))
             .collect(),
-        Solid::Polyhedron(polyhedron) => polyhedron.corners().to_vec(),
+        Solid::Polyhedron(ref polyhedron) => polyhedron.corners().to_vec(),
         Solid::Ball(_) => Vec::new(),
     }
 }
 
 /// The edges of a solid, as pairs of indices of its [`corners`].
-pub(crate) fn edges(solid: Solid) -> Vec<[usize; 2]> {
-    match solid {
+pub(crate) fn edges(solid: &Solid) -> Vec<[usize; 2]> {
+    match *solid {
         Solid::Cuboid(_) => [1, 2, 4]
             .into_iter()
             .flat_map(|bit| {
@@ -40,7 +40,7 @@ pub(crate) fn edges(solid: Solid) -> Vec<[usize; 2]> {
                 [[this, this + 1], [this, next], [this + 1, next + 1]]
             })
             .collect(),
-        Solid::Polyhedron(polyhedron) => polyhedron.edges(),
+        Solid::Polyhedron(ref polyhedron) => polyhedron.edges(),
         Solid::Ball(_) => Vec::new(),
     }
 }
@@ -70,16 +70,16 @@ mod tests {
                 sides + 2,
             ),
         ] {
-            assert_eq!(corners(solid).len() + faces, edges(solid).len() + 2);
+            assert_eq!(corners(&solid).len() + faces, edges(&solid).len() + 2);
         }
     }
 
     #[test]
     fn the_edges_of_a_cuboid_have_its_extents() {
         let span = Vec3::new(1.0, 2.0, 3.0);
-        let corners = corners(Solid::Cuboid(span));
+        let corners = corners(&Solid::Cuboid(span));
         for (axis, extent) in span.to_array().into_iter().enumerate() {
-            let along = edges(Solid::Cuboid(span))
+            let along = edges(&Solid::Cuboid(span))
                 .into_iter()
                 .filter(|&[a, b]| corners[b][axis] - corners[a][axis] == extent);
             assert_eq!(along.count(), 4);

@@ -17,9 +17,9 @@ pub(crate) struct Plane {
 impl Plane {
     /// The outline of the cut through a solid of this pose, as points of the world in their order around it; empty if
     /// the plane misses the solid.
-    pub fn cut(self, solid: Solid, pose: Pose) -> Vec<Vec3> {
+    pub fn cut(self, solid: &Solid, pose: Pose) -> Vec<Vec3> {
         let height = |point: Vec3| (point - self.point).dot(self.normal);
-        if let Solid::Ball(radius) = solid {
+        if let Solid::Ball(radius) = *solid {
             return self.circle(pose.location, height(pose.location), radius);
         }
         let corners: Vec<Vec3> = polyhedron::corners(solid)
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn a_cuboid_is_cut_in_a_polygon() {
         let cuboid = Solid::Cuboid(Vec3::new(2.0, 3.0, 4.0));
-        let flat = LEVEL.cut(cuboid, Pose::at(Vec3::Z));
+        let flat = LEVEL.cut(&cuboid, Pose::at(Vec3::Z));
         assert_eq!(flat.len(), 4);
         assert_near(length_around(&flat), 10.0);
         // Across all six faces of a cube: a regular hexagon.
@@ -87,7 +87,7 @@ mod tests {
             point: Vec3::ZERO,
             normal: Vec3::ONE.normalize(),
         };
-        let hexagon = diagonal.cut(Solid::Cuboid(Vec3::splat(2.0)), Pose::IDENTITY);
+        let hexagon = diagonal.cut(&Solid::Cuboid(Vec3::splat(2.0)), Pose::IDENTITY);
         assert_eq!(hexagon.len(), 6);
         assert_near(length_around(&hexagon), 6.0 * 2.0_f32.sqrt());
     }
@@ -98,19 +98,19 @@ mod tests {
             radius: 1.0,
             yspan: 4.0,
         };
-        let lying = LEVEL.cut(cylinder, Pose::IDENTITY);
+        let lying = LEVEL.cut(&cylinder, Pose::IDENTITY);
         assert_near(length_around(&lying), 12.0);
         let upright = Pose::from_degrees(Vec3::ZERO, Vec3::X * 90.0);
-        let circle = LEVEL.cut(cylinder, upright);
+        let circle = LEVEL.cut(&cylinder, upright);
         assert_near(length_around(&circle), std::f32::consts::TAU);
         let tilted = Pose::from_degrees(Vec3::ZERO, Vec3::X * 45.0);
-        let ellipse = LEVEL.cut(cylinder, tilted);
+        let ellipse = LEVEL.cut(&cylinder, tilted);
         assert_near(length_around(&ellipse), 7.640);
     }
 
     #[test]
     fn a_ball_is_cut_in_a_circle() {
-        let cut = LEVEL.cut(Solid::Ball(5.0), Pose::at(Vec3::new(1.0, 2.0, 3.0)));
+        let cut = LEVEL.cut(&Solid::Ball(5.0), Pose::at(Vec3::new(1.0, 2.0, 3.0)));
         for point in cut {
             assert_near(point.z, 0.0);
             assert_near(point.distance(Vec3::new(1.0, 2.0, 0.0)), 4.0);
@@ -129,7 +129,7 @@ mod tests {
         };
         let pose = Pose::from_degrees(Vec3::new(1.0, 1.0, 1.0), Vec3::new(20.0, 40.0, 60.0));
         for solid in [cylinder, Solid::Ball(2.0), Solid::Cuboid(Vec3::splat(3.0))] {
-            let cut = plane.cut(solid, pose);
+            let cut = plane.cut(&solid, pose);
             assert!(cut.len() >= 4);
             for point in cut {
                 assert_near((point - plane.point).dot(plane.normal), 0.0);
@@ -147,7 +147,7 @@ mod tests {
                 yspan: 2.0,
             },
         ] {
-            assert_eq!(LEVEL.cut(solid, Pose::at(Vec3::Z * 2.0)), []);
+            assert_eq!(LEVEL.cut(&solid, Pose::at(Vec3::Z * 2.0)), []);
         }
     }
 }

@@ -169,13 +169,13 @@ impl Looks {
         surfaces: &mut Assets<Surface>,
     ) -> impl Bundle + use<> {
         (
-            Mesh3d(self.mesh(primitive.solid, meshes)),
+            Mesh3d(self.mesh(&primitive.solid, meshes)),
             MeshMaterial3d(self.surface(primitive.color, surfaces)),
-            Transform::from(primitive.pose).with_scale(mesh::scale_of(primitive.solid)),
+            Transform::from(primitive.pose).with_scale(mesh::scale_of(&primitive.solid)),
         )
     }
 
-    pub(crate) fn mesh(&mut self, solid: Solid, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
+    pub(crate) fn mesh(&mut self, solid: &Solid, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
         match solid {
             Solid::Cuboid(_) => self.cuboid.clone(),
             Solid::Cylinder { .. } => self.cylinder.clone(),

@@ -128,20 +128,20 @@ fn nothing_overlaps_at_the_start() {
 
 #[test]
 fn overlaps_are_found() {
-    let at = |x, solid| Primitive {
+    let at = |x, solid: &Solid| Primitive {
         pose: Pose::at(Vec3::X * x),
-        solid,
+        solid: solid.clone(),
         color: tabletop_geometry::Rgb::GRAY,
     };
     let cube = Solid::Cuboid(Vec3::ONE);
-    assert!(are_apart(&at(0.0, cube), &at(1.0, cube)));
-    assert!(!are_apart(&at(0.0, cube), &at(0.99, cube)));
+    assert!(are_apart(&at(0.0, &cube), &at(1.0, &cube)));
+    assert!(!are_apart(&at(0.0, &cube), &at(0.99, &cube)));
     let log = Solid::Cylinder {
         radius: 0.5,
         yspan: 3.0,
     };
-    assert!(are_apart(&at(0.0, log), &at(1.001, log)));
-    assert!(!are_apart(&at(0.0, log), &at(0.99, log)));
+    assert!(are_apart(&at(0.0, &log), &at(1.001, &log)));
+    assert!(!are_apart(&at(0.0, &log), &at(0.99, &log)));
 }
 
 /// The bodies of an item, each as its solids. Neighbours in a chain may overlap, so a chain is one body.
@@ -198,7 +198,7 @@ fn reach(solid: &Primitive, direction: Vec3) -> f32 {
             radius * local.with_y(0.0).length() + yspan / 2.0 * local.y.abs()
         }
         Solid::Ball(radius) => radius * local.length(),
-        Solid::Polyhedron(polyhedron) => {
+        Solid::Polyhedron(ref polyhedron) => {
             let ends = [local, -local].map(|way| polyhedron.farthest(way).dot(way));
             ends[0].max(ends[1])
         }

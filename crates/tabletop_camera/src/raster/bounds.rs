@@ -11,7 +11,7 @@ pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &PinholeView) -> [Vec3;
         Solid::Cuboid(span) => span / 2.0,
         Solid::Cylinder { radius, yspan } => Vec3::new(radius, yspan / 2.0, radius),
         Solid::Ball(radius) => Vec3::splat(radius),
-        Solid::Polyhedron(polyhedron) => Vec3::splat(polyhedron.radius()),
+        Solid::Polyhedron(ref polyhedron) => Vec3::splat(polyhedron.radius()),
     };
     let center = drawn.pose.location - view.eye;
     let axes = Mat3::from_quat(drawn.pose.rotation);

@@ -67,7 +67,7 @@ impl KeptBands {
         if !is_same_room {
             shown.view = view;
             shown.markers.clone_from(&scene.markers);
-            let solids = scene.solids.iter().copied();
+            let solids = scene.solids.iter().cloned();
             shown.solids = solids.zip(visible.solid_rows()).collect();
             let figures = scene.figures.iter().map(FigureKey::of);
             shown.figures = figures.zip(visible.figure_rows()).collect();
@@ -88,7 +88,7 @@ impl KeptBands {
             if !is_same_solid(&before.0, now) {
                 change(&before.1);
                 change(&rows);
-                *before = (*now, rows);
+                *before = (now.clone(), rows);
             }
         }
         let figures = scene.figures.iter().zip(visible.figure_rows());

@@ -21,7 +21,7 @@ impl Polyhedra {
     pub fn find(&mut self, solids: &[DrawnSolid]) {
         self.figures.clear();
         for drawn in solids {
-            if let Solid::Polyhedron(polyhedron) = drawn.solid {
+            if let Solid::Polyhedron(polyhedron) = &drawn.solid {
                 let facets = self.facets_of(polyhedron, drawn.color);
                 self.figures.push(DrawnFigure {
                     pose: drawn.pose,
@@ -34,7 +34,7 @@ impl Polyhedra {
             .retain(|_, facets| Arc::strong_count(facets) > 1);
     }
 
-    fn facets_of(&mut self, polyhedron: Polyhedron, color: Rgb) -> Arc<Facets> {
+    fn facets_of(&mut self, polyhedron: &Polyhedron, color: Rgb) -> Arc<Facets> {
         let Rgb { red, green, blue } = color;
         let look = (polyhedron.number(), [red, green, blue].map(f32::to_bits));
         let facets = self
@@ -67,7 +67,7 @@ mod tests {
         let ring = solid(Solid::Polyhedron(Polyhedron::ring(1.0, 0.5, 0.4, 32)));
         let block = solid(Solid::Cuboid(Vec3::ONE));
         let mut polyhedra = Polyhedra::default();
-        polyhedra.find(&[block, ring, ring]);
+        polyhedra.find(&[block.clone(), ring.clone(), ring.clone()]);
         let [a, b] = polyhedra.figures() else {
             panic!("{:?}", polyhedra.figures());
         };

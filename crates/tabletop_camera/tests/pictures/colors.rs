@@ -18,8 +18,8 @@ fn share(normal: DVec3) -> f64 {
 }
 
 /// Asserts that every pixel of the solid has the colour of the formula, at the point that its depth gives.
-fn assert_lit(drawn: DrawnSolid, camera: Camera, normal_at: impl Fn(DVec3) -> DVec3) {
-    let picture = draw(&[drawn], &camera);
+fn assert_lit(drawn: &DrawnSolid, camera: Camera, normal_at: impl Fn(DVec3) -> DVec3) {
+    let picture = draw(std::slice::from_ref(drawn), &camera);
     let mut shown = std::collections::BTreeSet::new();
     for row in 0..camera.height {
         for column in 0..camera.width {
@@ -112,7 +112,7 @@ fn each_other_side_of_a_block_shows_a_share_of_its_own() {
             pose: (&before).into(),
             ..level(Vec3::ZERO, 30, 30)
         };
-        let shown = colors_of(1, &draw(&[block], &camera));
+        let shown = colors_of(1, &draw(std::slice::from_ref(&block), &camera));
         let [[red, green, blue]] = shown[..] else {
             panic!("{shown:?} of the side {side}");
         };
@@ -126,7 +126,7 @@ fn round_surfaces_are_lit_by_their_own_normals() {
     let center = DVec3::new(1.0, 0.0, 2.0);
     let color = Rgb::new(0.5, 0.3, 0.55);
     let ball = solid(1, center.as_vec3(), Solid::Ball(2.0), color);
-    assert_lit(ball, head(), |point| (point - center) / 2.0);
+    assert_lit(&ball, head(), |point| (point - center) / 2.0);
     let lying = Solid::Cylinder {
         radius: 2.0,
         yspan: 8.0,
@@ -134,7 +134,9 @@ fn round_surfaces_are_lit_by_their_own_normals() {
     // Its axis is along X, and its ends are not in view.
     let cylinder = turned(1, center.as_vec3(), Vec3::Z * 90.0, lying, color);
     let camera = level(Vec3::new(1.0, -8.0, 4.0), 60, 60);
-    assert_lit(cylinder, camera, |point| (point - center).with_x(0.0) / 2.0);
+    assert_lit(&cylinder, camera, |point| {
+        (point - center).with_x(0.0) / 2.0
+    });
 }
 
 #[test]
@@ -145,7 +147,7 @@ fn the_end_of_a_cylinder_is_flat() {
     };
     for degrees in [90.0, -90.0] {
         let color = "#00A57F".parse().unwrap();
-        let cylinder = turned(1, Vec3::Z, Vec3::X * degrees, standing, color);
+        let cylinder = turned(1, Vec3::Z, Vec3::X * degrees, standing.clone(), color);
         let above = Camera {
             pose: Pose::at(Vec3::Z * 35.0),
             ..head()

@@ -34,7 +34,7 @@ fn met(scene: &[DrawnSolid], camera: &Camera, x: f32, y: f32) -> Option<(f32, u3
         .filter_map(|drawn| {
             let primitive = Primitive {
                 pose: Pose::IDENTITY,
-                solid: drawn.solid,
+                solid: drawn.solid.clone(),
                 color: drawn.color,
             };
             let depth = primitive.distance_along(ray, drawn.pose)? / local.length();
@@ -162,7 +162,7 @@ fn from_inside_a_solid_is_not_seen() {
         },
     ] {
         for location in [Vec3::ZERO, Vec3::new(0.3, -0.4, 0.2)] {
-            let scene = [wall, solid(2, location, around, Rgb::WHITE)];
+            let scene = [wall.clone(), solid(2, location, around.clone(), Rgb::WHITE)];
             let picture = draw(&scene, &level(Vec3::ZERO, 40, 30));
             assert_eq!(picture.objects, [1; 1200], "{around:?}");
         }
@@ -182,7 +182,8 @@ fn solids_nearer_than_the_near_plane_are_not_seen() {
         (Solid::Ball(100.0), 100.0),
     ] {
         for (gap, seen) in [(0.008, 1), (0.012, 2)] {
-            let scene = [wall, solid(2, [0.0, half + gap, 0.0], shape, Rgb::WHITE)];
+            let near = solid(2, [0.0, half + gap, 0.0], shape.clone(), Rgb::WHITE);
+            let scene = [wall.clone(), near];
             let picture = draw(&scene, &level(Vec3::ZERO, 40, 30));
             assert_eq!(picture.objects, [seen; 1200], "{shape:?} at {gap}");
         }
@@ -201,7 +202,7 @@ fn solids_behind_the_camera_are_not_seen() {
     ] {
         for location in [[0.0, -2.0, 0.0], [0.9, -3.0, 0.9], [0.0, -1.001, 0.0]] {
             let picture = draw(
-                &[solid(1, location, shape, Rgb::WHITE)],
+                &[solid(1, location, shape.clone(), Rgb::WHITE)],
                 &level(Vec3::ZERO, 40, 30),
             );
             assert_eq!(picture.objects, [0; 1200], "{shape:?} at {location:?}");
@@ -231,7 +232,7 @@ fn a_long_solid_that_passes_the_eye_is_cut_off_at_it() {
 #[test]
 fn of_equal_surfaces_the_first_is_seen() {
     let cube = Solid::Cuboid(Vec3::ONE);
-    let twice = [1, 2].map(|number| solid(number, [0.0, 5.0, 0.0], cube, Rgb::WHITE));
+    let twice = [1, 2].map(|number| solid(number, [0.0, 5.0, 0.0], cube.clone(), Rgb::WHITE));
     let picture = draw(&twice, &level(Vec3::ZERO, 41, 31));
     assert!(picture.objects.contains(&1));
     assert!(!picture.objects.contains(&2));

@@ -52,9 +52,9 @@ proptest! {
     ) {
         let scene: Vec<_> = (1..)
             .zip(&solids)
-            .map(|(object, &(pose, solid, color))| DrawnSolid {
+            .map(|(object, &(pose, ref solid, color))| DrawnSolid {
                 pose,
-                solid,
+                solid: solid.clone(),
                 color: Rgb::new(color.x, color.y, color.z),
                 object,
             })

@@ -79,7 +79,7 @@ pub fn default_scene() -> Vec<DrawnSolid> {
             2,
             [2.0, 0.0, 1.0],
             about_z(-15.0),
-            cube,
+            cube.clone(),
             Rgb::new(1.0, 0.0, 0.0),
         ),
         turned(

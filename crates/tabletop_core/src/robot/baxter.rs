@@ -226,7 +226,7 @@ mod tests {
             .zip(RobotLayout::baxter().joint_ids())
         {
             assert_eq!(JointId::from(joint), id);
-            assert_eq!(JointName::new(&format!("{joint:?}")), joint.name());
+            assert_eq!(JointName::new(&format!("{joint:?}")), Ok(joint.name()));
         }
         for (arm, limb) in Arm::BOTH.into_iter().zip(&RobotLayout::baxter().limbs) {
             assert_eq!(arm.name(), limb.name);

@@ -199,7 +199,8 @@ impl LimbEntry {
             })
         });
         Ok(LimbLayout {
-            name: LimbName::new(&self.name),
+            name: LimbName::new(&self.name)
+                .map_err(|error| fault(format!("limb {}: {error}", self.name)))?,
             label: self.label.clone(),
             prefix: self.prefix.clone(),
             trackers: trackers.collect::<Result<_, _>>()?,
@@ -234,7 +235,7 @@ impl JointEntry {
         }
         let back = self.key.as_ref().map(|key| format!("Shift+{key}"));
         Ok(JointLayout {
-            name: JointName::new(name),
+            name: JointName::new(name).map_err(|error| fault(format!("joint {name}: {error}")))?,
             label: self.label.clone(),
             role,
             limits,
@@ -264,7 +265,8 @@ impl GripperEntry {
             )));
         }
         Ok(JointLayout {
-            name: JointName::new(name),
+            name: JointName::new(name)
+                .map_err(|error| fault(format!("gripper {name}: {error}")))?,
             label: "gripper".to_owned(),
             role: JointRole::Gripper(limb),
             limits: *opening,

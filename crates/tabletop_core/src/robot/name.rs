@@ -1,11 +1,6 @@
 //! Names of joints and limbs.
 
-use std::{
-    borrow::Cow,
-    collections::BTreeSet,
-    fmt,
-    sync::{Mutex, PoisonError},
-};
+use std::{borrow::Cow, fmt, str};
 
 use bevy::reflect::Reflect;
 use serde::{
@@ -13,18 +8,47 @@ use serde::{
     de::{DeserializeSeed, EnumAccess, Error, VariantAccess, Visitor},
 };
 
-/// Every name that was ever read. Names are few and short, so they are kept for ever.
-static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+/// Largest number of bytes of a name.
+const MOST_BYTES: usize = 63;
 
-fn interned(name: &str) -> &'static str {
-    let name = snake_case(name);
-    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = names.get(&*name) {
-        return known;
+/// A name in snake case, which is stored in place: a stranger's file may hold any number of names.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+struct Name {
+    /// Its bytes, and zeros behind them.
+    bytes: [u8; MOST_BYTES],
+    count: u8,
+}
+
+/// The error of a text that is too long for a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a name of {0} bytes, expected at most {MOST_BYTES}")]
+pub struct NameError(usize);
+
+impl Name {
+    fn new(name: &str) -> Result<Self, NameError> {
+        let name = snake_case(name);
+        match name.len() {
+            0..=MOST_BYTES => Ok(Self::of_snake_case(&name)),
+            count => Err(NameError(count)),
+        }
     }
-    let name: &'static str = Box::leak(name.into_owned().into_boxed_str());
-    names.insert(name);
-    name
+
+    /// A name of at most [`MOST_BYTES`].
+    const fn of_snake_case(name: &str) -> Self {
+        let from = name.as_bytes();
+        let mut bytes = [0; MOST_BYTES];
+        let mut i = 0;
+        while i < from.len() {
+            bytes[i] = from[i];
+            i += 1;
+        }
+        let count = i as u8;
+        Self { bytes, count }
+    }
+
+    fn as_str(&self) -> &str {
+        str::from_utf8(&self.bytes[..self.count.into()]).unwrap_or_default()
+    }
 }
 
 /// Turns `LeftE1` into `left_e1`; a name in snake case stays as it is.
@@ -48,14 +72,14 @@ pub fn snake_case(name: &str) -> Cow<'_, str> {
 struct NameVisitor;
 
 impl<'de> Visitor<'de> for NameVisitor {
-    type Value = &'static str;
+    type Value = Name;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a name")
     }
 
     fn visit_str<E: Error>(self, name: &str) -> Result<Self::Value, E> {
-        Ok(interned(name))
+        Name::new(name).map_err(E::custom)
     }
 
     fn visit_enum<A: EnumAccess<'de>>(self, access: A) -> Result<Self::Value, A::Error> {
@@ -66,7 +90,7 @@ impl<'de> Visitor<'de> for NameVisitor {
 }
 
 impl<'de> DeserializeSeed<'de> for NameVisitor {
-    type Value = &'static str;
+    type Value = Name;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
         deserializer.deserialize_identifier(self)
@@ -80,40 +104,43 @@ macro_rules! name {
         /// In files `left_e1` and `LeftE1` are the same.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]
         #[reflect(opaque)]
-        pub struct $name(&'static str);
+        pub struct $name(Name);
 
         impl $name {
             /// The name with this text.
-            pub fn new(name: &str) -> Self {
-                Self(interned(name))
+            ///
+            /// # Errors
+            /// It has more than 63 bytes.
+            pub fn new(name: &str) -> Result<Self, NameError> {
+                Name::new(name).map(Self)
             }
 
-            /// The name with this text, which is in snake case.
+            /// The name with this text of at most 63 bytes, which is in snake case.
             pub const fn from_static(name: &'static str) -> Self {
-                Self(name)
+                Self(Name::of_snake_case(name))
             }
 
             /// Its text, in snake case.
-            pub const fn as_str(self) -> &'static str {
-                self.0
+            pub fn as_str(&self) -> &str {
+                self.0.as_str()
             }
         }
 
         impl fmt::Display for $name {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.pad(self.0)
+                f.pad(self.as_str())
             }
         }
 
         impl fmt::Debug for $name {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(self.0)
+                f.write_str(self.as_str())
             }
         }
 
         impl Serialize for $name {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                serializer.serialize_str(self.0)
+                serializer.serialize_str(self.as_str())
             }
         }
 
@@ -152,9 +179,32 @@ mod tests {
             ("XYTable", "xytable"),
             ("J1", "j1"),
         ] {
-            assert_eq!(JointName::new(text).as_str(), name);
-            assert_eq!(JointName::new(text), JointName::from_static(name));
+            let found = JointName::new(text).unwrap();
+            assert_eq!(found.as_str(), name);
+            assert_eq!(found, JointName::from_static(name));
         }
+    }
+
+    #[test]
+    fn names_are_in_the_order_of_their_texts() {
+        let texts = ["", "a", "a\0", "a\0b", "aa", "b", "ä"];
+        let names = texts.map(|text| LimbName::new(text).unwrap());
+        assert!(names.is_sorted() && texts.is_sorted());
+        assert_eq!(names.each_ref().map(LimbName::as_str), texts);
+    }
+
+    #[test]
+    fn a_name_that_is_too_long_is_refused_with_the_limit() {
+        let longest = "j".repeat(MOST_BYTES);
+        assert_eq!(JointName::new(&longest).unwrap().as_str(), longest);
+        let longer = longest + "j";
+        assert_eq!(JointName::new(&longer), Err(NameError(64)));
+        let read = serde_json::from_str::<JointName>(&format!("\"{longer}\""));
+        let error = read.unwrap_err().to_string();
+        assert!(
+            error.contains("a name of 64 bytes, expected at most 63"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -24,7 +24,7 @@ impl Shape {
     /// The bounds of the solids that other bodies touch, if the shape's origin is at this pose.
     pub fn bounds(&self, at: Pose) -> Bounds {
         self.colliding()
-            .into_iter()
+            .iter()
             .map(|part| Bounds::of_primitive(part, at))
             .reduce(Bounds::union)
             .unwrap_or(Bounds::around(at.location, Vec3::ZERO))
@@ -103,15 +103,17 @@ fn primitives(simple_parts: Vec<Part>, purpose: SolidPurpose) -> Vec<Primitive> 
                     for side in 0..sides {
                         let angle = std::f32::consts::TAU * side as f32 / sides as f32;
                         let pose = Pose::new(Vec3::ZERO, turn_about(Vec3::Z, angle));
-                        add(pose, Solid::Polyhedron(wedge), color);
+                        add(pose, Solid::Polyhedron(wedge.clone()), color);
                     }
                 }
             },
             Shape::Mesh { ref mesh, color } => match purpose {
-                SolidPurpose::Drawing => add(center, Solid::Polyhedron(mesh.surface()), color),
+                SolidPurpose::Drawing => {
+                    add(center, Solid::Polyhedron(mesh.surface().clone()), color);
+                }
                 SolidPurpose::Filling | SolidPurpose::Colliding => {
-                    for &solid in mesh.solids() {
-                        add(center, Solid::Polyhedron(solid), color);
+                    for solid in mesh.solids() {
+                        add(center, Solid::Polyhedron(solid.clone()), color);
                     }
                 }
             },

@@ -298,7 +298,9 @@ mod tests {
             pose: Pose::at(Vec3::new(3.0, 0.0, 2.5)),
             solid: Solid::Cuboid(Vec3::new(1.0, 1.0, 5.0)),
         };
-        let way = carried.retargeted(&cube(), carried.poses[0], Some(carried.frame), &[tower]);
+        let from = carried.poses[0];
+        let obstacles = std::slice::from_ref(&tower);
+        let way = carried.retargeted(&cube(), from, Some(carried.frame), obstacles);
         for moment in &way {
             let own = PlacedSolid {
                 pose: moment.pose,

@@ -53,7 +53,7 @@ pub fn recording() -> &'static Path {
             hand,
             object: "Red".into(),
         };
-        let mut act = |command: SimCommand, ticks: u32| {
+        let mut act = |command: SimCommand, ticks: u64| {
             app.world_mut().write_command(command);
             app.step(ticks);
         };

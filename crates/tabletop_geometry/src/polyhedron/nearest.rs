@@ -7,20 +7,20 @@ use crate::triangles::enter_triangle;
 
 impl Polyhedron {
     /// The point where a ray enters its surface, as a factor of the direction. A ray that begins inside does not enter.
-    pub fn entry(self, origin: Vec3, direction: Vec3) -> Option<f32> {
+    pub fn entry(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
         self.faces()
             .filter_map(|[a, b, c]| enter_triangle(origin, direction, a, b, c))
             .min_by(f32::total_cmp)
     }
 
     /// True if a point is inside. For convex ones.
-    pub fn contains(self, point: Vec3) -> bool {
+    pub fn contains(&self, point: Vec3) -> bool {
         self.faces()
             .all(|[a, b, c]| (b - a).cross(c - a).dot(point - a) <= 0.0)
     }
 
     /// Distance of a point outside it. For convex ones.
-    pub fn distance_to(self, point: Vec3) -> f32 {
+    pub fn distance_to(&self, point: Vec3) -> f32 {
         if self.contains(point) {
             return 0.0;
         }

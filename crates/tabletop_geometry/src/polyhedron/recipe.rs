@@ -9,7 +9,7 @@ pub const ROUND_SIDES: u32 = 18;
 pub const MOST_SIDES: u32 = 64;
 
 /// The recipe of a polyhedron, with the bits of its lengths.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Recipe {
     Tapered {
         along: Along,
@@ -26,6 +26,10 @@ pub(super) enum Recipe {
         radii: [u32; 2],
         span: u32,
         sides: u32,
+    },
+    Read {
+        corners: Vec<[u32; 3]>,
+        triangles: Vec<[u32; 3]>,
     },
     Scaled {
         of: usize,

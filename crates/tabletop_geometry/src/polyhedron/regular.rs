@@ -5,7 +5,7 @@ use std::f32::consts::TAU;
 use bevy::prelude::*;
 
 use crate::polyhedron::{
-    MOST_SIDES, Polyhedron,
+    FLAT, MOST_SIDES, Polyhedron, PolyhedronData,
     recipe::{Along, Recipe},
 };
 
@@ -29,7 +29,7 @@ impl Polyhedron {
             span: span.to_bits(),
             sides,
         };
-        Self::made(recipe, || {
+        Self::rounded(recipe, sides, || {
             let rim = |end: usize, height| {
                 (0..sides).map(move |side| {
                     along.point(height, radii[end], TAU * side as f32 / sides as f32)
@@ -57,7 +57,7 @@ impl Polyhedron {
             span: zspan.to_bits(),
             sides,
         };
-        Self::made(recipe, || {
+        Self::rounded(recipe, sides, || {
             let inner = around_circle(radius_inner, radius_outer, sides);
             let corners = (0..sides).flat_map(|side| {
                 let angle = TAU * side as f32 / sides as f32;
@@ -93,7 +93,7 @@ impl Polyhedron {
             span: zspan.to_bits(),
             sides,
         };
-        Self::made(recipe, || {
+        Self::kept(recipe, || {
             let inner = around_circle(radius_inner, radius_outer, sides);
             let corners = [-zspan / 2.0, zspan / 2.0].into_iter().flat_map(|height| {
                 let corner = move |radius, side: f32| {
@@ -112,7 +112,7 @@ impl Polyhedron {
                 [[side, next, 4 + next], [side, 4 + next, 4 + side]]
             });
             let ends = [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
-            (corners, walls.chain(ends).collect(), Vec3::Z)
+            PolyhedronData::new(corners, walls.chain(ends).collect(), None, FLAT)
         })
     }
 }
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     /// True if every edge belongs to two triangles, which run along it in opposite directions.
-    fn is_closed(polyhedron: Polyhedron) -> bool {
+    fn is_closed(polyhedron: &Polyhedron) -> bool {
         let mut edges: Vec<_> = polyhedron
             .triangles()
             .iter()
@@ -153,7 +153,7 @@ mod tests {
             (Polyhedron::ring(1.0, 0.5, 2.0, 64), PI * 1.5),
             (Polyhedron::wedge(1.0, 0.5, 2.0, 64), PI * 1.5 / 64.0),
         ] {
-            assert!(is_closed(polyhedron), "{polyhedron:?}");
+            assert!(is_closed(&polyhedron), "{polyhedron:?}");
             let found = polyhedron.volume();
             assert!((found / volume - 1.0).abs() < 0.005, "{found} {volume}");
         }

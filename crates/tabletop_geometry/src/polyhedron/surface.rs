@@ -11,13 +11,13 @@ use crate::{
 
 impl Polyhedron {
     /// Its surface in a colour. The normals are those of its faces, or of the round surface that it is meant to have.
-    pub fn surface(self, color: Rgb) -> Triangles {
+    pub fn surface(&self, color: Rgb) -> Triangles {
         let PolyhedronData {
             corners,
             triangles,
             crease,
             ..
-        } = self.0;
+        } = &*self.0;
         let area = |&[a, b, c]: &[u32; 3]| {
             let [a, b, c] = [a, b, c].map(|corner| corners[corner as usize]);
             (b - a).cross(c - a)

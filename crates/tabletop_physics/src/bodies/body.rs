@@ -83,7 +83,7 @@ fn surface(settings: &PhysicsSettings, dynamics: Dynamics) -> impl Bundle + use<
 pub fn collider(shape: &Shape) -> Collider {
     match shape.colliding().as_slice() {
         [] => Collider::ball(POINT),
-        [only] if only.pose == Pose::IDENTITY => solid_collider(only.solid),
+        [only] if only.pose == Pose::IDENTITY => solid_collider(&only.solid),
         parts => compound(parts),
     }
 }
@@ -91,20 +91,20 @@ pub fn collider(shape: &Shape) -> Collider {
 fn compound(parts: &[Primitive]) -> Collider {
     let parts = parts.iter().map(|part| {
         let Pose { location, rotation } = part.pose;
-        (location, rotation, solid_collider(part.solid))
+        (location, rotation, solid_collider(&part.solid))
     });
     Collider::compound(parts.collect())
 }
 
-fn solid_collider(solid: Solid) -> Collider {
-    match solid {
+fn solid_collider(solid: &Solid) -> Collider {
+    match *solid {
         Solid::Cuboid(span) => Collider::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0),
         Solid::Cylinder { radius, yspan } => match Polytope::of_cylinder(radius, yspan) {
             Some(prism) => prism.into(),
             None => Collider::cylinder(yspan / 2.0, radius),
         },
         Solid::Ball(radius) => Collider::ball(radius),
-        Solid::Polyhedron(polyhedron) => match Polytope::of_polyhedron(polyhedron) {
+        Solid::Polyhedron(ref polyhedron) => match Polytope::of_polyhedron(polyhedron) {
             Some(polytope) => polytope.into(),
             None => cuboid_around(polyhedron),
         },
@@ -125,7 +125,7 @@ const fn angular_damping(shape: &Shape, settings: &PhysicsSettings) -> f32 {
 }
 
 /// A cuboid about the origin that encloses a polyhedron too thin for a polytope.
-fn cuboid_around(polyhedron: Polyhedron) -> Collider {
+fn cuboid_around(polyhedron: &Polyhedron) -> Collider {
     let Bounds { low, high } = polyhedron.bounds();
     let half = low.abs().max(high.abs()).max(Vec3::splat(1e-4));
     Collider::cuboid(half.x, half.y, half.z)

@@ -59,7 +59,7 @@ fn inertia_per_kg(primitive: &Primitive) -> DMat3 {
             about_center(Vec3::new(across, radius * radius / 2.0, across))
         }
         Solid::Ball(radius) => about_center(Vec3::splat(0.4 * radius * radius)),
-        Solid::Polyhedron(polyhedron) => {
+        Solid::Polyhedron(ref polyhedron) => {
             let faces = polyhedron
                 .faces()
                 .map(|face| face.map(|corner| orientation * corner.as_dvec3() + offset));

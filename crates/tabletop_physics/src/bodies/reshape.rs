@@ -16,7 +16,7 @@ const WOKEN: f32 = 1.05;
 pub fn reshape(world: &mut World, object: Entity, spec: ObjectSpec) {
     let is_other_body = world.get::<ObjectSpec>(object).is_none_or(|before| {
         let solids = |spec: &ObjectSpec| {
-            let solid = |part: &Primitive| (part.pose, part.solid);
+            let solid = |part: &Primitive| (part.pose, part.solid.clone());
             let solids = spec.shape.colliding();
             solids.iter().map(solid).collect::<Vec<_>>()
         };

@@ -68,7 +68,7 @@ impl Polytope {
     }
 
     /// A convex polyhedron; `None` if it is too flat or too thin to compute with.
-    pub fn of_polyhedron(polyhedron: Polyhedron) -> Option<SharedShape> {
+    pub fn of_polyhedron(polyhedron: &Polyhedron) -> Option<SharedShape> {
         let corners = polyhedron.corners().to_vec();
         let hull = ConvexPolyhedron::from_convex_mesh(corners, polyhedron.triangles())
             .or_else(|| ConvexPolyhedron::from_convex_hull(polyhedron.corners()))?;
@@ -304,7 +304,7 @@ mod tests {
     fn a_face_of_many_corners_touches_all_around_it() {
         for sides in [3, 4, 5, 6, 12, 32] {
             let frustum = Polyhedron::frustum(0.7, 1.0, 2.0, sides);
-            let shape = Polytope::of_polyhedron(frustum);
+            let shape = Polytope::of_polyhedron(&frustum);
             let shape = shape.unwrap_or_else(|| panic!("no polytope of {sides} sides"));
             let (map, _) = shape
                 .as_polygonal_feature_map()

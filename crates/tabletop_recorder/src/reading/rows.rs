@@ -64,7 +64,7 @@ pub(super) fn joints(path: &Path) -> Result<Vec<JointRow>, RecorderError> {
             return Err(String::new());
         };
         let tick = SimTick(number("a tick", tick)?);
-        let joint = JointName::new(name);
+        let joint = JointName::new(name).map_err(|error| error.to_string())?;
         if *first_tick.get_or_insert(tick) == tick {
             known.push(joint);
         } else if !known.contains(&joint) {

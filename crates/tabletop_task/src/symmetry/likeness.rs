@@ -22,7 +22,7 @@ fn is_like(solid: &Primitive, at: Pose, other: &Primitive) -> bool {
     let same = |a: f32, b: f32| (a - b).abs() < SAME_LENGTH;
     let is_there = at.location.distance(other.pose.location) < SAME_LENGTH;
     let relative = other.pose.rotation.inverse() * at.rotation;
-    let is_same_solid = match (solid.solid, other.solid) {
+    let is_same_solid = match (&solid.solid, &other.solid) {
         (Solid::Cuboid(a), Solid::Cuboid(b)) => {
             // Every edge lies along one of the other's.
             let turned =
@@ -43,8 +43,8 @@ fn is_like(solid: &Primitive, at: Pose, other: &Primitive) -> bool {
                 radius: b,
                 yspan: d,
             },
-        ) => same(a, b) && same(c, d) && (relative * Vec3::Y).cross(Vec3::Y).length() < 1e-3,
-        (Solid::Ball(a), Solid::Ball(b)) => same(a, b),
+        ) => same(*a, *b) && same(*c, *d) && (relative * Vec3::Y).cross(Vec3::Y).length() < 1e-3,
+        (Solid::Ball(a), Solid::Ball(b)) => same(*a, *b),
         (Solid::Polyhedron(a), Solid::Polyhedron(b)) => {
             is_there && is_same_polyhedron(a, b, relative)
         }
@@ -56,7 +56,7 @@ fn is_like(solid: &Primitive, at: Pose, other: &Primitive) -> bool {
 }
 
 /// True if every corner of a turned polyhedron lands on a corner of the other; of round ones, on a place where a corner could be.
-fn is_same_polyhedron(turned: Polyhedron, other: Polyhedron, turn: Quat) -> bool {
+fn is_same_polyhedron(turned: &Polyhedron, other: &Polyhedron, turn: Quat) -> bool {
     /// Largest number of corners that are compared, as more would take too long. A finer mesh has no symmetry.
     const MOST: usize = 300;
     let count = turned.corners().len();

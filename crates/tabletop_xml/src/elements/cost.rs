@@ -87,7 +87,7 @@ fn movable(shape: &Shape, at: Pose) -> BodyBounds {
 
 fn solids(shape: &Shape, at: Pose) -> Vec<Bounds> {
     let bounds = |part| Bounds::of_primitive(part, at);
-    shape.colliding().into_iter().map(bounds).collect()
+    shape.colliding().iter().map(bounds).collect()
 }
 
 fn links(chain: &ChainSpec) -> Vec<BodyBounds> {
