@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_controller::{Observer, SeenObject, Sight};
 use tabletop_core::{
-    JointKind, Random, RobotCommand, RobotLayout, SceneItem, SceneSpec, StepApp as _, Table,
+    JointKind, Random, RobotCommand, RobotLayout, SceneItem, SceneSpec, StepApp as _,
     WriteCommand as _,
 };
 use tabletop_geometry::Pose;
@@ -60,7 +60,7 @@ pub fn scattered_for(
 ) -> Option<SceneSpec> {
     let is_possible = |scene: &SceneSpec| {
         let objects = assemble(scene, &mut IdAllocator::default()).objects;
-        // What does not take the roles is told by who binds them.
+        // The binding of roles reports objects that do not fit.
         let Ok(binding) = task.bind(requirements, &objects) else {
             return true;
         };
@@ -132,7 +132,7 @@ pub fn scattered(
                     .into_iter()
                     .map(move |solid| PlacedSolid::of(&solid, *pose))
             });
-            // What slides is opened by one arm.
+            // A sliding part is opened by one arm.
             let reached = parts.iter().map(|part| {
                 let ways = opened.iter().filter(|(slid, _)| slid.id == part.id);
                 let ends = ways.map(|(_, pose)| pose.location);

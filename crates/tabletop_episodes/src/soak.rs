@@ -137,7 +137,7 @@ fn look(app: &mut App) -> Result<(), String> {
     Ok(())
 }
 
-/// What does not move: the table, and fixed objects that nobody holds.
+/// Immovable obstacles: the table, and fixed objects that nobody holds.
 fn obstacles(app: &mut App) -> Vec<FixedParts> {
     let mut tables = app.world_mut().query::<&Table>();
     let table = tables.iter(app.world()).next().map(|table| {

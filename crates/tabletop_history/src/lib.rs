@@ -1,7 +1,7 @@
 //! Undo and redo: the world as it was at the beginning of a recording's segment, bit for bit.
 //!
 //! Each plugin registers its own part, as in `bevy_ggrs`: components of the entities marked [`Rollback`](tabletop_core::Rollback),
-//! resources, and any other state that decides what comes next ([`RollbackState`]). While a recording runs, [`begin_segment`]
+//! resources, and any other state on which later ticks depend ([`RollbackState`]). While a recording runs, [`begin_segment`]
 //! keeps a [`WorldSnapshot`]; [`HistoryCommand`](tabletop_core::HistoryCommand)s
 //! go back and forth between these. Snapshots share unchanged parts.
 //!

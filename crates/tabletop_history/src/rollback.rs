@@ -18,7 +18,7 @@ pub trait RollbackApp {
     /// Undo and redo restore this component of entities marked [`Rollback`](tabletop_core::Rollback), and remove it where it was absent.
     fn rollback_component<C: Component + Clone>(&mut self) -> &mut Self;
 
-    /// This component of entities that roll back is derived: it is computed again from what rolls back, before anything reads it.
+    /// This component of entities that roll back is derived: it is computed again from state that rolls back, before anything reads it.
     fn derived_component<C: Component>(&mut self) -> &mut Self;
 
     /// Undo and redo restore this resource.
@@ -107,7 +107,7 @@ impl RollbackRegistry {
         self.parts.iter().copied()
     }
 
-    /// True if undo takes care of a component or resource: it is restored, or derived from what is.
+    /// True if undo restores a component or resource, or derives it from restored state.
     pub fn covers(&self, id: TypeId) -> bool {
         self.parts.iter().any(|part| part.of == id) || self.derived.contains(&id)
     }

@@ -1,4 +1,4 @@
-//! Effort where it is needed: the engine's precision in the next step, chosen from its state alone.
+//! Effort where it is needed: the solver settings of the next step, chosen from Rapier's state alone.
 //!
 //! The solver is most of a tick. An object that stands alone needs few sub-steps; one deep in a stack, or handled, needs many; a
 //! landing needs many sweeps.
@@ -28,7 +28,7 @@ use crate::{
     workarounds::{memory::forget, release::JustReleased},
 };
 
-pub(crate) fn spend_effort(
+pub(crate) fn configure_solver(
     mut contexts: Query<(
         &mut RapierContextSimulation,
         &RapierContextColliders,
@@ -56,7 +56,7 @@ pub(crate) fn spend_effort(
             joints: &joints.impulse_joints,
             gravity: settings.gravity,
         };
-        engine.wake_what_is_hit(held.iter().map(|handle| handle.0));
+        engine.wake_sleepers_in_the_way(held.iter().map(|handle| handle.0));
         care.spend(engine);
     }
 }

@@ -1,4 +1,4 @@
-//! Geometry of solids without a step of the engine: nearest points and distances.
+//! Geometry of solids without a physics step: nearest points and distances.
 
 mod convex;
 mod nearby;

@@ -24,7 +24,7 @@ const PULLED_PER_TICK: f32 = 0.25;
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component)]
 pub enum Carry {
-    /// It goes exactly where its [`Transform`] says, whatever acts on it.
+    /// It goes exactly where its [`Transform`] says; no force moves it.
     Freely,
     /// It is pulled towards its target, as far as its joints allow.
     AgainstJoints,

@@ -146,7 +146,7 @@ impl Plugin for PhysicsPlugin {
                 FixedUpdate,
                 (
                     sync_backend().in_set(PhysicsSet::SyncBackend),
-                    effort::spend_effort
+                    effort::configure_solver
                         .after(PhysicsSet::SyncBackend)
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),

@@ -25,7 +25,7 @@ type Context = (
 #[derive(Resource, Default)]
 struct LastStep([Tick; 4]);
 
-/// The part of a step that a tick at rest still makes in the engine.
+/// The part of a physics step that a tick at rest still makes.
 #[derive(Resource)]
 struct BareStep {
     step: SystemId,
@@ -95,7 +95,7 @@ fn is_any_body_removed(mut removed: Removals) -> bool {
     removed.any()
 }
 
-/// Lets the engine count the steps of ticks that are passed over, as far as the number matters: the last bits of later steps
+/// Lets Rapier count the steps of ticks that are passed over, as far as the number matters: the last bits of later steps
 /// depend on it.
 fn count_steps(world: &mut World, ticks: u64) -> Result {
     let &BareStep { step, note } = world.resource();

@@ -1,4 +1,4 @@
-//! Snapshots of the physics engine.
+//! Snapshots of Rapier.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use tabletop_history::{RollbackState, Since, despawn_or_park};
 
 use crate::{effort::Care, holding::Carry};
 
-/// The physics engine's whole state: not poses alone, but contacts, sleep and everything else that decides what comes next.
+/// Rapier's whole state: not poses alone, but contacts, sleep and all else on which later steps depend.
 /// A world that is [restored](RollbackState::restore) goes on bit for bit as the one that was [saved](RollbackState::save), if the
 /// entities of its bodies have their components of that moment, too.
 #[derive(Clone, Default)]
@@ -26,7 +26,7 @@ pub struct PhysicsSnapshot {
     simulation: Arc<EngineState>,
 }
 
-/// The part of a [`RapierContextSimulation`] that decides what comes next.
+/// The part of a [`RapierContextSimulation`] on which later steps depend.
 #[derive(Default)]
 struct EngineState {
     islands: IslandManager,
@@ -130,7 +130,7 @@ impl RollbackState for PhysicsSnapshot {
     }
 }
 
-/// A part of the engine, or the earlier snapshot of it if it has not changed since.
+/// A part of Rapier's state, or the earlier snapshot of it if it has not changed since.
 fn save<C: Component, S>(
     context: EntityRef,
     earlier: Option<(&PhysicsSnapshot, Since)>,
@@ -172,7 +172,7 @@ fn bytes_of_simulation(simulation: &EngineState) -> usize {
     simulation.narrow_phase.contact_pairs().map(pair).sum()
 }
 
-/// Makes the engine as new if it has no bodies: the handles of former bodies would decide the last bits of what comes next.
+/// Renews Rapier if it has no bodies: the handles of removed bodies would decide the last bits of later steps.
 pub fn renew_if_empty(world: &mut World) {
     let mut bodies = world.query_filtered::<&RapierRigidBodySet, With<DefaultRapierContext>>();
     if bodies.single(world).is_ok_and(|set| set.bodies.is_empty()) {
@@ -201,7 +201,7 @@ pub fn remove_joint(world: &mut World, joint: Entity) {
     despawn_or_park(world, joint);
 }
 
-/// Takes an entity's body, with its colliders and joints, out of the engine. The entity itself stays.
+/// Takes an entity's body, with its colliders and joints, out of Rapier. The entity itself stays.
 fn remove_body(world: &mut World, entity: Entity) {
     let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();
     let Ok((mut simulation, mut bodies, mut colliders, mut joints)) = contexts.single_mut(world)

@@ -1,4 +1,4 @@
-//! The length of an arm: what it certainly does not reach.
+//! The length of an arm, by which poses are certainly out of reach.
 
 use bevy::math::{DAffine3, DVec3};
 use tabletop_kinematics::ArmChain;

@@ -44,7 +44,7 @@ pub struct LimbBody {
     solids: Vec<CarriedSolid>,
 }
 
-/// A solid that is rigidly connected with what a joint of a limb turns.
+/// A solid that a joint of a limb turns.
 #[derive(Clone, Debug)]
 struct CarriedSolid {
     link: usize,

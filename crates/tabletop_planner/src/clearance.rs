@@ -69,7 +69,7 @@ impl Margins {
     };
 }
 
-/// Largest angle by which what is held may lean, in rad, unless it is to be tipped.
+/// Largest tilt of a held object, in rad, unless it is to be tipped.
 const LEAN: f32 = 0.3;
 /// Distance of an arm's links from objects and table.
 const LINKS: f32 = 0.05;

@@ -23,7 +23,7 @@ pub enum PlanFailure {
     Occupied {
         /// The object that was to be moved.
         object: String,
-        /// What is there.
+        /// The object that is there.
         by: String,
     },
     /// No free path leads to the goal.

@@ -14,8 +14,8 @@ use crate::{
 /// How deep solids may be in each other, in units.
 const PLAY: f32 = 0.02;
 
-/// Whether all that a task puts to exact places is on the table in the end, and not in each other or in what nothing moves: no robot could do it
-/// otherwise.
+/// True if all objects with exact goals are on the table in the end, and penetrate neither each other nor an immovable object. No robot could
+/// do the task otherwise.
 pub fn is_feasible(task: &Task, binding: &Binding, sight: &Sight) -> bool {
     let mut last = BTreeMap::new();
     for (number, id, pose) in goal_poses(task, binding, sight) {

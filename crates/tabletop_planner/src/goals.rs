@@ -264,7 +264,7 @@ fn exact(
 
 /// Whether a direction is up, rather than to a side.
 fn is_up(way: Vec3) -> bool {
-    // More than half of the eighth of a turn by which variants of what is round differ.
+    // More than half of the eighth of a turn by which variants of a round object differ.
     way.angle_between(Vec3::Z) < 0.45
 }
 

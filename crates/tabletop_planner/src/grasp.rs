@@ -71,7 +71,7 @@ pub fn grasps(
     if parts.len() > 1 {
         wholes.extend(parts.iter().map(|part| solids(&part.shape, part.pose)));
     }
-    // Whatever part is grasped, the fingers must not go below the object's support.
+    // The fingers must not go below the object's support, for any grasped part.
     let ground = wholes[0]
         .iter()
         .map(|solid| solid.heights()[0])
@@ -102,7 +102,7 @@ pub fn grasps(
                 } else {
                     &[0.0]
                 };
-                // Higher holds leave room for what is below and around.
+                // Higher grasps leave room for objects below and around.
                 let highest = z[1] + finger / 2.0 - SHALLOW;
                 for share in [0.0, 0.5, 1.0] {
                     let rise = (highest - height).max(0.0) * share;

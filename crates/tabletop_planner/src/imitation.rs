@@ -45,7 +45,7 @@ pub struct Doing {
 /// Number of tries of a step.
 const TRIES: usize = 3;
 
-/// Does a task. Whatever is tried by chance is decided by `seed`; `tell` hears of every step before it is tried.
+/// Does a task. `seed` decides all random trials; `tell` is called with every step before it is tried.
 pub fn imitate(
     stage: &mut dyn PlanningStage,
     body: &RobotBody,
@@ -115,7 +115,7 @@ struct Imitator<'a> {
     /// The posture in which each limb waits.
     parked: Vec<Angles>,
     before: Before,
-    /// What was moved out of the way, in this order.
+    /// Objects that were moved out of the way, in this order.
     cleared: Vec<Cleared>,
     outcome: Imitation,
 }
@@ -197,7 +197,7 @@ impl Imitator<'_> {
         wait(stage, 30)
     }
 
-    /// The first step whose object no arm can take where it stands in the beginning. What is on, in or around something may be elsewhere by then.
+    /// The first step whose object no arm can take where it stands in the beginning. Objects on, in or around others may be elsewhere by then.
     fn unreached(&self, sight: &Sight) -> Option<(usize, PlanFailure)> {
         let arrangement = sight.arrangement();
         let mut begun = Vec::new();

@@ -96,7 +96,7 @@ impl Arranged for Sight {
         let above = |id: &str| arrangement.standing_on(id).into_iter();
         let mut visited = BTreeSet::from([id]);
         let mut stack = Vec::new();
-        // From the object upwards, with what is yet to be visited above each.
+        // From the object upwards, each with the objects above it that are yet to be visited.
         let mut way = vec![(id, above(id))];
         while let Some((below, unvisited)) = way.last_mut() {
             match unvisited.find(|other| visited.insert(other)) {

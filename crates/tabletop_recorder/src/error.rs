@@ -122,7 +122,7 @@ pub enum RecorderError {
         /// The fault.
         problem: String,
     },
-    /// The files say what no recorder writes.
+    /// The files hold content that no recorder writes.
     #[error("{folder}: {problem}; a file was changed, or is damaged")]
     Files {
         /// The folder of the recording.
@@ -130,7 +130,7 @@ pub enum RecorderError {
         /// The fault.
         problem: String,
     },
-    /// A line of another file is not what it should be.
+    /// A line of another file is invalid.
     #[error("{path}:{line}: {problem}; the file was changed, or is damaged")]
     Line {
         /// The file.
@@ -140,7 +140,7 @@ pub enum RecorderError {
         /// The fault.
         problem: String,
     },
-    /// A line of a session log is not what it should be.
+    /// A line of a session log is invalid.
     #[error(
         "{path}:{line}: {source}; expected a session log of format {format}, as this program writes it",
         format = crate::files::format::FORMAT

@@ -1,4 +1,4 @@
-//! Recordings of demonstrations on disk, in the files of the original program and with what replays need besides.
+//! Recordings of demonstrations on disk, in the files of the original program, with further files for replays.
 //!
 //! A recording is one episode in a folder: per segment `n` the events `n.txt` and the pictures `n/<frame>.png`, and for the
 //! whole of it the commands `session.jsonl` and the states `states.csv`. `docs/recordings.md` describes the files.

@@ -90,7 +90,7 @@ fn is_picture(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension == "png")
 }
 
-/// The difference between two texts: the number of the first line that differs, and what differs in it.
+/// The difference between two texts: the number of the first differing line, and the difference.
 fn first_difference_of(before: &[u8], after: &[u8]) -> String {
     let [mut before, mut after] =
         [before, after].map(|text| text.split_inclusive(|byte| *byte == b'\n'));
@@ -104,7 +104,7 @@ fn first_difference_of(before: &[u8], after: &[u8]) -> String {
     String::new()
 }
 
-/// What is shown of two lines: all, or if one is long, of both what is around the first difference.
+/// Excerpts of two lines: the whole lines, or, if one is long, the surroundings of the first difference.
 fn excerpts(lines: [Option<&[u8]>; 2]) -> [String; 2] {
     let lines = lines.map(|line| {
         let text = String::from_utf8_lossy(line?);

@@ -89,7 +89,7 @@ impl Player {
         self.given == self.commands.len()
     }
 
-    /// The first tick of the recording: what comes before it has led there.
+    /// The first tick of the recording; earlier commands have led to its state.
     pub fn start(&self) -> SimTick {
         self.start
     }
@@ -173,7 +173,7 @@ pub(crate) fn plugin(app: &mut App) {
     .wake_after(|player: Option<Res<Player>>, tick: Res<SimTick>| player?.waits_for(*tick));
 }
 
-/// Begins a pause after the tick's commands were carried out: what undo leaves of a tick are commands to the scene, hands and mechanisms.
+/// Begins a pause after the tick's commands were carried out: undo leaves only commands to the scene, hands and mechanisms of a tick.
 fn pause_late(mut player: ResMut<Player>, mut paused: ResMut<Paused>, tick: Res<SimTick>) {
     if player.pauses_late(*tick) {
         player.given += 1;

@@ -6,7 +6,7 @@ use tabletop_storage::{Storage, TemporaryFolder};
 
 use crate::{Replay, ReplayError, difference::bytes_in};
 
-/// Number of bytes that a replay may write beyond those of the recording. What was cut off is missing there.
+/// Number of bytes that a replay may write beyond those of the recording. Lines that were cut off are missing there.
 const MOST_BEYOND: u64 = 64 << 20;
 
 impl Replay {

@@ -11,7 +11,7 @@ use tabletop_storage::{
     FolderLock, LockedFolder, Storage, StoredFile, Symlinks, is_taken, read_regular_text,
 };
 
-/// The file that says what a collection was made with, so that other demonstrations are not mixed with it.
+/// The file with the demonstration and the options of a collection, so that others are not mixed with it.
 const MANIFEST: &str = "multiply.json";
 
 /// The most bytes of it that are read.

@@ -53,7 +53,7 @@ pub(super) fn perform(
         app,
     };
     while !performance.is_over() {
-        performance.begin_what_is_due()?;
+        performance.begin_due_acts()?;
         performance.move_hands();
         performance.app.step(1);
         performance.look()?;
@@ -145,7 +145,7 @@ impl Performance<'_> {
         })
     }
 
-    fn begin_what_is_due(&mut self) -> Result<(), (usize, PlanFailure)> {
+    fn begin_due_acts(&mut self) -> Result<(), (usize, PlanFailure)> {
         for i in 0..self.acts.len() {
             if !matches!(self.acts[i].progress, CarryProgress::Waiting) || !self.is_due(i) {
                 continue;

@@ -18,8 +18,8 @@ use crate::imitation::scattered;
 pub struct Variation {
     /// True if objects get other colours, as far as the requirements allow.
     pub colors: bool,
-    /// By which part of it, at most, blocks and cylinders are narrower, as far as what is required allows; 0 for not at all. Heights stay, so that
-    /// what stands on them stands as high as it was shown.
+    /// By which part of it, at most, blocks and cylinders are narrower, as far as requirements allow; 0 for not at all. Heights stay, so that
+    /// objects on them stand as high as in the demonstration.
     pub sizes: f32,
     /// Largest number of distractors: objects that have nothing to do with the task.
     pub distractors: u32,
@@ -212,7 +212,7 @@ impl Varying<'_> {
             Shape::Block { span, .. } => {
                 let axes = [Vec3::X, Vec3::Y, Vec3::Z].into_iter();
                 let level: Vec<_> = axes.filter(|axis| is_level(*axis)).collect();
-                // What leans stays as it is, or it would stand otherwise.
+                // A leaning object keeps its size, or it would stand otherwise.
                 let [one, other] = level[..] else {
                     return;
                 };
@@ -239,7 +239,7 @@ impl Varying<'_> {
         }
     }
 
-    /// Whether an object still has what is required of the role that it takes by its id.
+    /// Whether an object still meets the requirements of the role that it takes by its id.
     fn may_be(&self, spec: &ObjectSpec) -> bool {
         let lacks = self.requirements.lacks(&spec.id, spec);
         lacks.is_none_or(|lacks| lacks.is_empty())

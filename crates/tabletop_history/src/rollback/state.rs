@@ -6,8 +6,8 @@ use bevy::prelude::*;
 
 use super::saved::{Earlier, Saved, Since};
 
-/// State that decides what comes next and is neither a resource nor a component of an entity that rolls back, such as that of a
-/// physics engine.
+/// State on which later ticks depend and that is neither a resource nor a component of an entity that rolls back, such as that of
+/// Rapier.
 pub trait RollbackState: Send + Sync + Sized + 'static {
     /// The present state, sharing unchanged parts with an earlier one; `None` in a world that has none.
     fn save(world: &mut World, earlier: Option<(&Self, Since)>) -> Option<Self>;

@@ -8,7 +8,7 @@ use bevy_rapier3d::{prelude::MassProperties, rapier};
 use tabletop_core::Shape;
 use tabletop_geometry::{Primitive, Solid};
 
-/// Mass properties of a shape that weighs `mass` kg: the centre of mass is its origin whatever its parts are
+/// Mass properties of a shape that weighs `mass` kg: the centre of mass is its origin with any parts
 /// (report section 6.2, `<composite>`), and the inertia about it is that of its parts, all of one density.
 pub fn mass_properties(shape: &Shape, mass: f32) -> MassProperties {
     let primitives = shape.colliding();
@@ -68,7 +68,7 @@ fn inertia_per_kg(primitive: &Primitive) -> DMat3 {
     }
 }
 
-/// The inertia about the origin of what these triangles enclose, for a mass of 1 kg.
+/// The inertia about the origin of the solid within these triangles, for a mass of 1 kg.
 fn inertia_of_faces(faces: impl Iterator<Item = [DVec3; 3]>) -> DMat3 {
     let (mut volume, mut moment) = (0.0, DMat3::ZERO);
     for [a, b, c] in faces {

@@ -32,8 +32,8 @@ pub fn reshape(world: &mut World, object: Entity, spec: ObjectSpec) {
     world.entity_mut(object).insert(spec);
 }
 
-/// Changes the collider in the engine, where undo restores it. The components follow unnoticed: those of a new object have yet to be
-/// carried to the engine.
+/// Changes the collider in Rapier, where undo restores it. The components follow unnoticed: those of a new object have yet to be
+/// carried to Rapier.
 fn set_collider(world: &mut World, object: Entity, spec: &ObjectSpec) {
     let collider = collider(&spec.shape);
     let mass = (!spec.is_fixed()).then(|| mass_properties(&spec.shape, spec.mass));

@@ -1,4 +1,4 @@
-//! The choice of the engine's precision, and the ticks for which more than the present state counts.
+//! The choice of solver settings, and the ticks for which earlier states count too.
 
 use bevy::prelude::*;
 use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
@@ -14,16 +14,16 @@ use super::{
     touches::Touches,
 };
 
-/// The way at most, in units, of a body that is seen ahead when it approaches a hand or a link.
+/// Longest contact prediction, in units, for a body that approaches a hand or a link.
 const WAY_TO_HANDS: f32 = 3.0;
 
-/// Speed, in units/s, from which the way of a body to a hand or a link is seen ahead.
+/// Speed, in units/s, from which contacts with a hand or a link are predicted.
 const SPEED_TO_HANDS: f32 = 1.0;
 
-/// The same of a body that is near other things, too: Rapier would forget its contact with what it is leaving.
+/// The same speed for a body that is near other bodies, too: Rapier would forget its contact with the body that it is leaving.
 const SPEED_TO_HANDS_BESIDE_OTHERS: f32 = 12.0;
 
-/// Angular speed, in rad/s, from which a body's way is not seen ahead: Rapier would not see where its edges go.
+/// Angular speed, in rad/s, from which no contacts are predicted: Rapier would not predict where its edges go.
 const MOST_TURNING: f32 = 1.0;
 
 /// Speed, in units/s, from which collision detection is continuous.
@@ -35,15 +35,15 @@ const DECAY: usize = 2;
 /// Number of ticks for which everything has the most sub-steps after a hand or a robot was near something.
 const HANDLING_TICKS: u32 = 30;
 
-/// Number of ticks for which the engine sweeps as for a landing. Continuous collision detection stops a fast body a little above the surface
+/// Number of ticks for which the solver has the sweeps of a landing. Continuous collision detection stops a fast body a little above the surface
 /// that it lands on, and the body falls the rest of the way in the next ticks.
 const LANDING_TICKS: u32 = 4;
 
 /// Number of ticks without handling and landings from which low stacks have sweeps of their own. A change of sweeps moves a stack a little, so
-/// what may sleep is to sleep before it.
+/// bodies that can sleep are to sleep before it.
 const CALM_TICKS: u32 = 30;
 
-/// The number of ticks for which the engine takes more care than its state calls for.
+/// The number of ticks for which the solver settings are finer than the present state needs.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub struct Care {
@@ -54,7 +54,7 @@ pub struct Care {
 }
 
 impl Care {
-    /// Chooses the engine's precision in the next step.
+    /// Chooses the solver settings of the next step.
     pub fn spend(&mut self, engine: Engine) {
         if engine.islands.num_active_bodies() == 0 {
             *self = Self::default();
@@ -97,7 +97,7 @@ impl Care {
         mode.set(engine.parameters);
     }
 
-    /// Takes the most care with what was let go, from the next step on.
+    /// Sets the finest solver settings from the next step on, for an object that was released.
     pub(crate) fn expect_landing(&mut self) {
         self.landing = LANDING_TICKS;
     }
@@ -131,7 +131,7 @@ impl Care {
             sweeps,
             prediction,
             recycles: !self.is_handling() && !self.is_landing(),
-            // Among contacts that are seen far ahead, a merged one may lack the corner that touches.
+            // Among contacts predicted far ahead, a cluster may lack the corner that touches.
             clusters: self.is_handling() && prediction <= PREDICTION,
             is_continuous: fastest_point.is_some_and(|it| self.is_handling() || it > SPEED_OF_CCD),
         }
@@ -141,7 +141,7 @@ impl Care {
 /// The greatest speeds of the bodies that move freely, in units/s.
 #[derive(Clone, Copy, Default)]
 struct Motion {
-    /// Of what lands flat, or 0.
+    /// Of a body that lands flat, or 0.
     landing: f32,
     /// Of a body at the end of the step, if nothing stops it.
     fall: f32,
@@ -150,9 +150,9 @@ struct Motion {
 }
 
 impl Motion {
-    /// Distance at which contacts are to be predicted. A body beyond it is touched in one point, whatever its shape. The broad phase looks
-    /// half as far for each of two bodies. Rapier's own prediction for fast bodies (soft CCD) forgets the contact with what a body is
-    /// leaving, or sliding along: what presses it back in the same tick would press it in.
+    /// Distance of contact prediction. A body beyond it is touched in one point, with any shape. The broad phase looks half as far for each of
+    /// two bodies. Rapier's own prediction for fast bodies (soft CCD) forgets the contact with a body that is left or slid along: a body that
+    /// presses back in the same tick would press in.
     fn prediction(self, dt: f32) -> f32 {
         (self.landing.max(2.0 * self.fall) * dt).clamp(PREDICTION, FARTHEST_PREDICTION)
     }
@@ -168,7 +168,7 @@ impl Motion {
     }
 }
 
-/// How far the way of a body to a hand or a link is seen ahead, in units.
+/// Distance of the contact prediction for a body near a hand or a link, in units.
 fn way_ahead(factors: SubstepFactors, body: &RigidBody) -> f32 {
     let speed_to_hands = match factors.is_near_others {
         true => SPEED_TO_HANDS_BESIDE_OTHERS,

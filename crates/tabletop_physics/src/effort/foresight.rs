@@ -35,7 +35,7 @@ impl Engine<'_> {
         })
     }
 
-    /// Twice the number of a body's solids' pairs with what sleeps, and once that with what is awake.
+    /// The number of pairs of a body's solids with awake bodies, plus twice the number of those with sleeping ones.
     fn halves_of_pairs(&self, handle: RigidBodyHandle, gap: f32) -> usize {
         let near = self.broad_phase.as_query_pipeline(
             self.narrow_phase.query_dispatcher(),

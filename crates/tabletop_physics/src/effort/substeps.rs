@@ -7,7 +7,7 @@ use super::{engine::Engine, touches::Touches};
 /// Number of sub-steps of every body; each has more in addition. Low stacks need no more.
 pub(crate) const BASE_SUBSTEPS: usize = 2;
 
-/// Least number of sub-steps of what is not in a low stack, or of everything while anything else is awake.
+/// Least number of sub-steps of bodies outside low stacks, and of all bodies while any such body is awake.
 const LEAST_SUBSTEPS: usize = 4;
 
 /// Number of sub-steps of handled bodies.
@@ -109,8 +109,8 @@ pub(crate) fn substeps(body: &RigidBody) -> usize {
 /// Number of sub-steps that a body needs which no force moves.
 pub(crate) fn substeps_of_unmoved(body: &RigidBody) -> usize {
     if body.is_fixed() {
-        // The engine keeps what was held and is fixed now among the moving bodies while anything moves, and solves its contacts with the
-        // sub-steps of whichever body has fewer.
+        // While anything moves, Rapier keeps a fixed body that was held among the moving ones, and solves its contacts with the sub-steps of the
+        // body that has fewer.
         MOST_SUBSTEPS
     } else {
         LEAST_SUBSTEPS

@@ -22,7 +22,7 @@ pub(crate) struct Touches {
     pub near_hands: BTreeSet<u32>,
     /// Those of them that are near something else, too.
     pub near_others: BTreeSet<u32>,
-    /// True if any of them is awake, or what it is near moves.
+    /// True if any of them is awake, or a body near it moves.
     pub is_handling: bool,
 }
 
@@ -74,7 +74,7 @@ impl Touches {
     }
 }
 
-/// Those of these bodies that are near something that no hand or robot moves, whether their contact is seen ahead or not.
+/// Those of these bodies that are near a body that no hand or robot moves, with or without a predicted contact.
 fn near_others(engine: &Engine, bodies: &BTreeSet<u32>) -> BTreeSet<u32> {
     if bodies.is_empty() {
         return BTreeSet::new();

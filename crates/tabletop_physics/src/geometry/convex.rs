@@ -1,4 +1,4 @@
-//! Distances of convex solids, for bodies that move without the physics engine.
+//! Distances of convex solids, for bodies that move without Rapier.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{

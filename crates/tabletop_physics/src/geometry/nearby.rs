@@ -1,4 +1,4 @@
-//! Surroundings of bodies that move without the physics engine.
+//! Surroundings of bodies that move without Rapier.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{

@@ -12,7 +12,7 @@ use crate::workarounds::impulses::{impulse_share, solved_points};
 pub struct Pressure {
     /// The object.
     pub on: Entity,
-    /// What presses.
+    /// The pressing object.
     pub by: Entity,
     /// Where, in the table's frame.
     pub point: Vec3,
@@ -20,7 +20,7 @@ pub struct Pressure {
     pub force: f32,
 }
 
-/// What pressed onto objects in the last tick. Bodies that hands or robots move press onto what can move, and not onto what is immovable.
+/// The pressures onto objects in the last tick. Bodies that hands or robots move press onto movable objects, and not onto immovable ones.
 pub fn pressures_on(world: &mut World, objects: &[Entity]) -> Vec<Pressure> {
     let mut contexts = world.query_filtered::<(
         &RapierContextSimulation,

@@ -16,7 +16,7 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// True if the physics engine already has the contact, so that one pushes the other.
+    /// True if Rapier already has the contact, so that one pushes the other.
     pub fn is_push(self) -> bool {
         self.gap <= TOUCHING
     }

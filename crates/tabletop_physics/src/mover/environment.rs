@@ -23,7 +23,7 @@ pub struct FreeObject {
     pub solids: Vec<SweptSolid<Entity>>,
     /// The box around it.
     pub bounds: Aabb,
-    /// The box of everything that it may come near in this tick.
+    /// The box that it can reach in this tick, with a margin.
     pub vicinity: Aabb,
     /// True while it sleeps.
     pub is_sleeping: bool,
@@ -36,7 +36,7 @@ pub struct Environment {
     pub immovable: Vec<SweptSolid<Entity>>,
     /// The free objects, in the order of their creation.
     pub free: Vec<FreeObject>,
-    /// Pairs of objects that joints let be pushed into each other; in both orders.
+    /// Pairs of objects that a joint lets overlap, in both orders.
     pass: BTreeSet<[Entity; 2]>,
 }
 
@@ -90,7 +90,7 @@ impl Environment {
     }
 }
 
-/// The box of everything that a body may come near in a tick.
+/// The box that a body can reach in a tick, with a margin.
 fn vicinity(thing: &Nearby) -> Aabb {
     let radius = thing.bounds.half_extents().length();
     let speed = thing.body.linvel().length() + radius * thing.body.angvel().length();

@@ -52,7 +52,7 @@ pub const SLIDING_STEP: f32 = 0.02;
 /// Largest number of steps in a move; a move that needs more continues in the next tick.
 pub const MOST_SLIDING_STEPS: usize = 96;
 
-/// Number of tries to slide along obstacles and push no free object too much.
+/// Largest number of attempts to slide along obstacles without squeezing a free object.
 pub const MOST_SLIDES: usize = 4;
 
 // Arms, which go along a path of joint positions and keep away from immovable solids.

@@ -133,7 +133,7 @@ impl Environment {
         })
     }
 
-    /// Depth, in units, of a shifted free object in immovable solids.
+    /// Penetration depth, in units, of a shifted free object in immovable solids.
     fn depth(&self, object: &FreeObject, by: Vec3) -> f32 {
         let solids = self.immovable.iter();
         depth_in(

@@ -16,8 +16,8 @@ use bevy_rapier3d::{
 /// Largest difference of equal gaps, in units.
 const SAME_GAP: f32 = 1e-4;
 
-/// Distances, in units, to which solids that are in one another are moved apart for a better normal: the search finds a rough one far from
-/// the solids, and the exact one near them.
+/// Distances, in units, to which penetrating solids are moved apart for a better normal: the search finds a rough normal at the large
+/// distance, and the exact one at the small one.
 const APART: [f32; 8] = [1.0, 0.3, 0.3, 0.1, 0.1, 0.1, 0.1, 0.1];
 
 /// Directions in which the search is repeated.
@@ -32,10 +32,10 @@ const DIRECTIONS: [Vec3; 6] = [
 
 /// The nearest points of two solids at these poses, if they are no farther apart than `most`, in units.
 ///
-/// This is what Parry's `contact` finds. But its search, from one direction, gives up on about one in ten thousand solids
-/// that touch a slab near its edge, and takes them for far apart; and one in two hundred lying cylinders that touch a slab it takes for deeper or
-/// farther away than they are, as it does with what leans on an edge. Where it has not found a plane between them, or another plane leaves a
-/// wider gap, other directions are tried; where it has, in solids that are in one another by other than their faces, planes beside it.
+/// Parry's `contact` returns the same, with faults: it searches from one direction. It misses about one in ten thousand contacts near the edge of
+/// a slab. It misjudges the depth or the distance of one in two hundred cylinders that lie on a slab, and of solids that lean on an edge. So other
+/// directions are tried where no separating plane is found, or where another plane leaves a wider gap. Where solids penetrate each other, but not
+/// by their faces, planes beside the one that was found are tried.
 pub fn contact(
     at: &rapier::Pose,
     solid: &dyn rapier::Shape,
@@ -92,7 +92,7 @@ fn search(
             start,
         )
     };
-    // Moved just apart along a normal, two solids have nearest points whose normal leaves a gap that is no narrower.
+    // Once two solids are moved just apart along a normal, the normal of their nearest points leaves a gap at least as wide.
     let widened = |mut rough: Contact| {
         for distance in APART {
             let way = (distance - rough.dist) * rough.normal1;

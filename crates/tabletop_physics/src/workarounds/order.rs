@@ -1,12 +1,12 @@
-//! The order of changes: that of the engine's handles.
+//! The order of changes: that of Rapier's handles.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
 use super::outside::{ChangedBody, ChangedCollider};
 
-/// Notes in the engine what has changed, sorted. The plugin notes it in the order in which Bevy stores entities, which depends on all that ever
-/// happened, undone or not, and the engine wakes bodies and finds their pairs in the order in which they were noted.
+/// Sorts the changed bodies that are noted in Rapier. The plugin notes them in the order in which Bevy stores entities, which depends on the whole
+/// history, undone or not; Rapier wakes bodies and finds their pairs in the noted order.
 pub(crate) fn note_changes(
     changed_bodies: Query<&RapierRigidBodyHandle, ChangedBody>,
     changed_colliders: Query<&RapierColliderHandle, ChangedCollider>,

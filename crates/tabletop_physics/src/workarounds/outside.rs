@@ -1,4 +1,4 @@
-//! Changes from outside: what anything but the engine's own steps has changed in bodies, colliders and joints.
+//! Changes from outside: changes of bodies, colliders and joints other than by Rapier's own steps.
 
 use bevy::{
     ecs::{
@@ -10,7 +10,7 @@ use bevy::{
 };
 use bevy_rapier3d::prelude::*;
 
-/// Bodies whose changes Rapier's plugin is about to carry to the engine.
+/// Bodies whose changes the plugin is about to carry to Rapier.
 pub(crate) type ChangedBody = Or<(
     Changed<RigidBody>,
     Changed<RigidBodyDisabled>,
@@ -29,7 +29,7 @@ pub(crate) type ChangedBody = Or<(
     Changed<SoftCcd>,
 )>;
 
-/// The same of colliders.
+/// Colliders whose changes the plugin is about to carry to Rapier.
 pub(crate) type ChangedCollider = Or<(
     Changed<Collider>,
     Changed<ColliderDisabled>,
@@ -46,7 +46,7 @@ pub(crate) type ChangedCollider = Or<(
     Changed<ContactSkin>,
 )>;
 
-/// What only bodies of other apps have: one question for all of it is answered at once where there is none.
+/// Components that only bodies of other apps have, in one query: where there are none, it is answered at once.
 type ChangedExtra = Or<(
     Changed<LockedAxes>,
     Changed<Dominance>,
@@ -65,16 +65,16 @@ type ChangedExtra = Or<(
     Changed<ContactSkin>,
 )>;
 
-/// The moment after the last step, when all that the engine had changed was written to components.
+/// The moment after the last step, when Rapier's changes had been written to components.
 #[derive(Resource, Default)]
 pub(crate) struct WrittenBack(Option<Tick>);
 
-/// Notes that the last step has been written to components.
+/// Notes the moment at which the results of a step have been written to components.
 pub(crate) fn note_written_back(mut written: ResMut<WrittenBack>, now: SystemChangeTick) {
     written.0 = Some(now.this_run());
 }
 
-/// True if anything was changed, added or removed since the last step that has to be carried to the engine.
+/// True if a change, an addition or a removal since the last step has to be carried to Rapier.
 pub(crate) fn has_changed(
     world: &World,
     written: Res<WrittenBack>,
@@ -92,7 +92,7 @@ pub(crate) fn has_changed(
     *removed_since == Some(since) || watches.see_a_change(world, since, now.this_run())
 }
 
-/// Watches for changes of the components that Rapier's plugin carries to the engine.
+/// Changes of the components that the plugin carries to Rapier.
 pub(crate) struct Watches(Vec<Watch>);
 
 /// True if one of its components has changed after the first of these moments.
@@ -139,7 +139,7 @@ impl Watches {
     }
 }
 
-/// Components that were removed, which the engine has to forget.
+/// Removed components, which Rapier has to forget.
 #[derive(SystemParam)]
 pub(crate) struct Removals<'w, 's> {
     body_handles: RemovedComponents<'w, 's, RapierRigidBodyHandle>,
@@ -156,7 +156,7 @@ pub(crate) struct Removals<'w, 's> {
 }
 
 impl Removals<'_, '_> {
-    /// True if any was removed since the last question.
+    /// True if any was removed since the last call.
     pub fn any(&mut self) -> bool {
         let removed = [
             self.body_handles.read().count(),

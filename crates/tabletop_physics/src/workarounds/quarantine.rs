@@ -1,7 +1,7 @@
-//! Quarantine: bodies whose poses or velocities were no numbers after a step, as happens with extreme masses.
+//! Quarantine of bodies with a NaN pose or velocity after a step, as happens with extreme masses.
 //!
-//! The engine disables them, at rest where they were last, for good. Here they come back after a step without them, in which it has forgotten
-//! their contacts.
+//! Rapier disables them for good, at rest at their last finite pose. Here they come back after a step without them, in which Rapier has
+//! forgotten their contacts.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -12,7 +12,7 @@ use bevy_rapier3d::{
     rapier::prelude::{RigidBody, RigidBodyHandle, RigidBodyType},
 };
 
-/// The bodies that the engine has disabled.
+/// The bodies that Rapier has disabled.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Quarantine {
     /// Those of the last step.
@@ -32,7 +32,7 @@ impl Quarantine {
     }
 }
 
-/// Lets out of quarantine what was there during this step, notes what has come into it, and stops what has a velocity that is no number.
+/// Releases the bodies that were in quarantine during this step, notes the new ones, and stops bodies with a NaN velocity.
 pub(crate) fn let_out(
     mut contexts: Query<(&RapierContextSimulation, &mut RapierRigidBodySet)>,
     mut quarantine: ResMut<Quarantine>,
@@ -65,7 +65,7 @@ pub(crate) fn let_out(
     }
 }
 
-/// Stops a body. The engine looks only at poses, so it keeps a velocity that has not led anywhere yet, and that of a body that is moved.
+/// Stops a body. Rapier checks poses alone, so it keeps a NaN velocity that has not moved a body yet, and that of a kinematic body.
 fn stop(body: &mut RigidBody) {
     let kind = body.body_type();
     // Otherwise only dynamic bodies could be stopped.

@@ -1,4 +1,4 @@
-//! Relief: what a step has pressed deep into something that does not move is put back to its surface.
+//! Relief, or depenetration: a body that a step has pressed deep into a fixed one is put back to its surface.
 //!
 //! To the solver, a table is as heavy as a hand that presses something on it, and either may win. Here the table always does; the hand then
 //! finds something in its way, and yields.
@@ -23,10 +23,10 @@ use crate::{
 /// Depth, in units, that is left to the solver.
 const DEEPEST: f32 = 0.04;
 
-/// Depth, in units, to which a deeper body is lifted: less, so that it is not deeper again by rounding.
+/// Depth, in units, to which a deeper body is lifted: a little less, so that rounding does not make it too deep again.
 const LIFTED: f32 = 0.035;
 
-/// Length of a step's way, in units, from which on a body may be in something that it did not touch before.
+/// Way of a body in a step, in units, from which it may penetrate a body that it did not touch before.
 const QUICK: f32 = 0.01;
 
 /// Moves every body that is too deep in fixed ones along the shortest way out.
@@ -67,7 +67,7 @@ pub(crate) fn relieve(
         Some((handle, way))
     });
     let mut pressed: Vec<_> = pressed.collect();
-    // The engine notes changed bodies in the order of their changes; its own order of awake ones depends on what was undone.
+    // Rapier notes changed bodies in the order of their changes; its order of awake bodies depends on undone segments.
     pressed.sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
     for (handle, way) in pressed {
         let Some(body) = set.bodies.get_mut(handle) else {
@@ -82,7 +82,7 @@ pub(crate) fn relieve(
     }
 }
 
-/// Relief for bodies, from the state of the engine after a step.
+/// Depenetration of bodies, from the state of Rapier after a step.
 struct Relief<'a> {
     simulation: &'a RapierContextSimulation,
     colliders: &'a ColliderSet,
@@ -101,7 +101,7 @@ impl Relief<'_> {
         let is_jointed = || self.joints.attached_joints(handle).next().is_some();
         let mut obstacles = match is_quick(body, before) && !is_jointed() {
             true => self.fixed_shapes_at(body),
-            // What is held by a joint may be in what holds it: only contacts tell.
+            // A jointed body may penetrate its partner: only contacts tell.
             false => self.deep_contacts(body),
         };
         obstacles.sort_unstable_by_key(|shape| shape.into_raw_parts());
@@ -148,7 +148,7 @@ impl Relief<'_> {
         body.is_none_or(rapier::RigidBody::is_fixed)
     }
 
-    /// True if the contacts that a step began with were too deep, or have become so in it: what rolls is soon touched elsewhere.
+    /// True if contacts were too deep at the beginning of the step, or became so in it: a rolling body is soon touched elsewhere.
     fn is_deep(&self, pair: &ContactPair) -> bool {
         let pose = |collider| self.colliders.get(collider).map(Collider::position);
         let (Some(first), Some(second)) = (pose(pair.collider1), pose(pair.collider2)) else {
@@ -184,14 +184,14 @@ impl Relief<'_> {
     }
 }
 
-/// True if a step has moved a body so far that it may be in something that it did not touch before.
+/// True if a step has moved a body so far that it may penetrate a body that it did not touch before.
 fn is_quick(body: &rapier::RigidBody, before: &Transform) -> bool {
     let now = body.position();
     let way = now.translation.distance(before.translation);
     way + REACH * now.rotation.angle_between(before.rotation) > QUICK
 }
 
-/// The part of a box that what reaches into is too deep in it; inside out if the box is thin.
+/// The core of a box: a body that reaches into the core is too deep in the box. Inside out if the box is thin.
 fn core(bounds: &Aabb) -> Aabb {
     let depth = Vec3::splat(DEEPEST);
     Aabb::new(bounds.mins + depth, bounds.maxs - depth)

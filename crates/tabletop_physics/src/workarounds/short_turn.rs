@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
 
 /// Lets kinematic bodies turn by less than half a turn in a step. A quaternion and its negative are the same orientation, but Rapier takes
-/// velocities from them as they stand: when the sign changes, a body that hardly moves would strike what it touches as if it spun round.
+/// velocities from them as they stand: when the sign changes, a body that hardly moves would strike its contacts as if it spun round.
 pub(crate) fn turn_the_short_way(
     moved: Query<&RapierRigidBodyHandle, Changed<GlobalTransform>>,
     mut bodies: Query<&mut RapierRigidBodySet, With<DefaultRapierContext>>,

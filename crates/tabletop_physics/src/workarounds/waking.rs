@@ -1,7 +1,7 @@
-//! Waking what is about to be hit.
+//! Waking bodies that are about to be hit.
 //!
-//! Rapier wakes it when it has been hit, after it has looked for contacts: what it stands on would not hold it before the next step, and a
-//! blow from above would press it in.
+//! Rapier wakes a body when it has been hit, after collision detection: its support would hold it only from the next step on, and a blow
+//! from above would press it in.
 
 use bevy_rapier3d::{
     parry::bounding_volume::BoundingVolume,
@@ -10,19 +10,19 @@ use bevy_rapier3d::{
 
 use crate::effort::{Engine, speed};
 
-/// What is slower, in units/s and rad/s together, presses nothing in.
+/// Speed, in units/s and rad/s together, below which a body presses nothing in.
 const SPEED_OF_BLOW: f32 = 1.0;
 
-/// What is this near to the way of a body may be hit, in units.
+/// Distance, in units, from the way of a body within which it may hit another one.
 const MARGIN: f32 = 0.02;
 
 impl Engine<'_> {
-    /// Wakes what sleeps in the way of something fast: of what moves freely, and of what is held. Robots wake what their links are near to.
-    pub(crate) fn wake_what_is_hit(&mut self, held: impl Iterator<Item = RigidBodyHandle>) {
+    /// Wakes sleeping bodies in the way of fast free and held bodies. Robots wake the bodies near their links.
+    pub(crate) fn wake_sleepers_in_the_way(&mut self, held: impl Iterator<Item = RigidBodyHandle>) {
         let awake = self.islands.active_bodies();
         let free = awake.filter(|mover| self.bodies[*mover].is_dynamic());
         let mut movers: Vec<_> = free.chain(held).collect();
-        // The world's own order depends on what was undone.
+        // Rapier's own order depends on undone segments.
         movers.sort_unstable_by_key(|mover| mover.into_raw_parts());
         for mover in movers {
             for sleeper in self.asleep_in_the_way_of(mover) {

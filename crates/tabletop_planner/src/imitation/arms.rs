@@ -33,7 +33,7 @@ impl Imitator<'_> {
         })
     }
 
-    /// What has become of something, or, if it cannot be done from above, of the same from beside.
+    /// The result of an act from above or, if that is impossible, of the same act from beside.
     pub(super) fn or_from_beside(
         &self,
         stage: &mut dyn PlanningStage,

@@ -1,4 +1,4 @@
-//! Clearing: what is in the way is put aside.
+//! Clearing: obstacles are put aside.
 
 use bevy::math::{Quat, Vec3};
 use tabletop_controller::{SeenObject, Sight};
@@ -14,7 +14,7 @@ use crate::{
     stage::PlanningStage,
 };
 
-/// What is nearer than this leaves no room for fingers, in units.
+/// Distance, in units, below which an object leaves no room for fingers.
 const FINGER_ROOM: f32 = 0.7;
 
 impl Imitator<'_> {
@@ -100,7 +100,7 @@ impl Imitator<'_> {
         Ok(poses.map(|pose| object.solids_at(pose)).collect())
     }
 
-    /// What stays beside a step's object: objects of the steps up to this one, and what carries the object.
+    /// Objects that stay beside a step's object: those of the steps up to this one, and the supports of the object.
     fn settled(&self, sight: &Sight, step: &TaskStep, id: &str) -> Vec<String> {
         let steps = &self.task.steps[..step.number];
         let relations = steps.iter().flat_map(|step| &step.relations);
@@ -142,7 +142,7 @@ impl Imitator<'_> {
         Ok(lids.collect())
     }
 
-    /// Moves something out of the way, with what stands on it.
+    /// Moves an object out of the way, with the objects that stand on it.
     pub(super) fn clear(
         &mut self,
         stage: &mut dyn PlanningStage,
@@ -153,7 +153,7 @@ impl Imitator<'_> {
         self.clear_alone(stage, id, i)
     }
 
-    /// Moves out of the way what stands on something.
+    /// Moves the objects that stand on another one out of the way.
     pub(super) fn clear_above(
         &mut self,
         stage: &mut dyn PlanningStage,

@@ -1,4 +1,4 @@
-//! Putting back what was in the way, after the last step.
+//! Putting obstacles back, after the last step.
 
 use tabletop_controller::Sight;
 
@@ -20,7 +20,7 @@ impl Imitator<'_> {
         }
     }
 
-    /// Puts back what was moved out of the way, the last first. What does not fit any more, or cannot be put back, stays where it is.
+    /// Puts objects back that were moved out of the way, the last first. An object that does not fit any more, or cannot be put back, stays.
     pub(super) fn put_all_back(&mut self, stage: &mut dyn PlanningStage) -> Result<(), Stopped> {
         for cleared in std::mem::take(&mut self.cleared).iter().rev() {
             if let Err(PlanFailure::Stopped) = self.put_back(stage, cleared) {

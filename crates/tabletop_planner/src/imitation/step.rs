@@ -1,4 +1,4 @@
-//! A step: what it asks for, and how the object gets there.
+//! A step: its goals, and the way of the object to one of them.
 
 use bevy::math::Vec3;
 use tabletop_controller::Sight;

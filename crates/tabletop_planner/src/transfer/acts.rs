@@ -1,4 +1,4 @@
-//! The acts of a transfer: what the arm does when it takes an object, carries it and lets it go.
+//! The acts of a transfer: an arm takes an object, carries it and lets it go.
 
 use bevy::math::Vec3;
 use tabletop_controller::Sight;

@@ -102,7 +102,7 @@ impl Transfer<'_> {
         }
     }
 
-    /// Whether a grasp of the object is within reach, whatever is around it.
+    /// Whether a grasp of the object is within reach, obstacles aside.
     pub fn reach(&self, sight: &Sight) -> Result<(), PlanFailure> {
         let object = self.seen(sight)?;
         let here = sight.limbs[self.limb].angles;
@@ -118,7 +118,7 @@ impl Transfer<'_> {
         }
     }
 
-    /// Whether the arm reaches one of these goals with the object in its fingers, whatever is in the way.
+    /// Whether the arm reaches one of these goals with the object in its fingers, obstacles aside.
     pub fn reaches(&self, sight: &Sight, goals: &[Candidate]) -> bool {
         let Ok(object) = self.seen(sight) else {
             return false;
@@ -233,7 +233,7 @@ impl Transfer<'_> {
             let upright = self.upright(&taking.at, goal.placement);
             let holding = self.holding(sight, object, grip, taking.grasp.width, upright);
             let end = above_place(goal, grip);
-            // What is tipped has many goals that look the same.
+            // A tipped object has many goals that look the same.
             let put = match goal.is_tipped() {
                 true => holding.reach_soon(end, &taking.at),
                 false => holding.reach(end, &taking.at),

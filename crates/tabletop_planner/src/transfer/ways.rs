@@ -16,7 +16,7 @@ use crate::{
 
 /// Openings of the fingers for a release, in units beyond the held width. The first that has room is used.
 pub(super) const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
-/// Distances by which an arm withdraws from what it has let go, in units: rather more than less.
+/// Distances by which an arm withdraws from a released object, in units: rather more than less.
 const BACK: [f32; 3] = [1.4, 1.0, 0.6];
 
 /// A feasible way to put the held object down.

@@ -70,12 +70,12 @@ impl Folder {
         self.path.join(".intent.json")
     }
 
-    /// The folder of what was undone and can be redone.
+    /// The folder of undone segments that can be redone.
     pub(crate) fn undone(&self) -> Self {
         Self::at(&self.path.join(".undone"), &self.storage)
     }
 
-    /// The folder of what was undone and cannot be redone any more, on its way out.
+    /// The folder of undone segments that cannot be redone any more, about to be removed.
     pub(crate) fn dropped(&self) -> Self {
         Self::at(&self.path.join(".dropped"), &self.storage)
     }
@@ -85,7 +85,7 @@ impl Folder {
         Self::at(&self.undone().pictures(segment), &self.storage)
     }
 
-    /// The folder of what was undone with a segment. It must be there, and no link to another.
+    /// The folder of the files of an undone segment. It must exist, and be no link to another.
     pub(crate) fn require_undone_segment(&self, segment: u32) -> Result<Self, RecorderError> {
         let undone_segment = self.undone_segment(segment);
         for folder in [&self.undone().path, &undone_segment.path] {

@@ -16,7 +16,7 @@ pub(crate) struct FrameClock {
 }
 
 impl FrameClock {
-    /// The frame that shows what happens in this tick: the first one that is not before it.
+    /// The frame of this tick: the first one that is not before it.
     pub(crate) fn frame(self, tick: SimTick) -> u64 {
         self.elapsed(tick).div_ceil(TICKS_PER_FRAME)
     }

@@ -2,7 +2,7 @@
 
 use tabletop_core::HandCamera;
 
-/// The hand cameras whose pictures a recording holds, too. Where one does, what moves the robot's joints is reason enough for
+/// The hand cameras whose pictures a recording holds, too. Where one does, a moving joint of the robot is reason enough for
 /// the pictures of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum HandPictures {

@@ -1,7 +1,7 @@
 //! Changes of several files at once, of which all happen or none.
 //!
-//! The intent is written before the files are touched, and gone when all of it is done. Who finds one in a recording that nobody
-//! is making does what it says: every step can be taken twice.
+//! The intent is written before the files are touched, and gone when all of it is done. A program that finds one in a recording that nobody
+//! is making carries it out: every step can be taken twice.
 
 use std::path::Path;
 
@@ -146,8 +146,8 @@ impl Intent {
     }
 }
 
-/// Does what a program that was killed was about to do.
-pub(crate) fn fulfil_what_was_left(folder: &Folder) -> Result<(), RecorderError> {
+/// Finishes the interrupted change of a killed program.
+pub(crate) fn finish_interrupted(folder: &Folder) -> Result<(), RecorderError> {
     let path = folder.intent();
     if !is_taken(&path) {
         return Ok(());

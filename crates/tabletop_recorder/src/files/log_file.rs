@@ -9,8 +9,8 @@ use tabletop_storage::{Storage, StoredFile};
 
 use crate::error::RecorderError;
 
-/// A file that grows by whole lines. What is appended is with the operating system when the call returns, so it outlives
-/// the program; what cannot be appended whole is not in the file.
+/// A file that grows by whole lines. An appended line is with the operating system when the call returns, so it outlives
+/// the program; a line that cannot be appended whole is not in the file.
 #[derive(Debug)]
 pub(crate) struct LogFile {
     path: PathBuf,

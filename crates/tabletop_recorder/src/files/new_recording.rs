@@ -110,7 +110,7 @@ fn move_aside(folder: &Folder) -> Result<PathBuf, RecorderError> {
     })
 }
 
-/// Looks at what has a folder's name. Only an empty folder and a recording that nobody is making may be in the way.
+/// Finds the occupant of a folder's name. Only an empty folder and a recording that nobody is making may be in the way.
 fn occupant(folder: &Folder) -> Result<Occupant, RecorderError> {
     let path = folder.path();
     if !is_taken(path) {

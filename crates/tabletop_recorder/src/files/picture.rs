@@ -25,7 +25,7 @@ pub(crate) fn depth_png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError
     encode_16_bits(picture, values)
 }
 
-/// In 16 bits, what each pixel shows: 0 for nothing, or the number of what stands in this place of the list.
+/// The object of each pixel in 16 bits: 0 for none, or the number at its place in the list.
 pub(crate) fn ids_png(picture: &Picture, numbers: &[u16]) -> Result<Vec<u8>, png::EncodingError> {
     let values = picture.objects.iter().map(|&object| {
         let place = (object as usize).checked_sub(1);

@@ -10,7 +10,7 @@ use crate::{
         destination::Destination,
         durability::Durability,
         folder::Folder,
-        intent::{Intent, Lengths, fulfil_what_was_left},
+        intent::{Intent, Lengths, finish_interrupted},
         joints,
         json::to_json_line,
         log_file::LogFile,
@@ -77,7 +77,7 @@ impl RecordingFiles {
         })
     }
 
-    /// Makes sure that the folder is still in its place: what is written to its files would be elsewhere otherwise.
+    /// Makes sure that the folder is still in its place: otherwise lines would be written elsewhere.
     pub(crate) fn require_in_place(&self) -> Result<(), RecorderError> {
         match self.session.is_in_place()? {
             true => Ok(()),
@@ -164,7 +164,7 @@ impl RecordingFiles {
         Ok(())
     }
 
-    /// Removes for good what was put away.
+    /// Removes the files of undone segments for good.
     pub(crate) fn drop_undone(&self) -> Result<(), RecorderError> {
         let dropped = self.folder.dropped();
         dropped.remove()?;
@@ -237,12 +237,12 @@ impl RecordingFiles {
         }
     }
 
-    /// Closes the files of a recording that could not go on, and does what then was about to be done.
+    /// Closes the files of a recording that could not go on, and finishes its interrupted change.
     pub(crate) fn abandon(self) {
         let folder = self.folder.clone();
         drop(self);
         // It is done when the recording is read, then.
-        let _ = fulfil_what_was_left(&folder);
+        let _ = finish_interrupted(&folder);
     }
 }
 

@@ -1,4 +1,4 @@
-//! The session log: what a recording needs besides the states to be run again.
+//! The session log: the content that a replay needs besides the states.
 
 use std::path::{Path, PathBuf};
 
@@ -53,7 +53,7 @@ pub struct SessionHeader {
     pub settings: Map<String, Value>,
 }
 
-/// Further content of the next recording's header: whatever a replay must know.
+/// Further content of the next recording's header that a replay must know.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct SessionSettings(pub Map<String, Value>);
 
@@ -210,7 +210,7 @@ impl Session {
 const LONGEST_SHOWN: usize = 200;
 
 impl SessionScene {
-    /// Says what makes no sense in it.
+    /// Returns the first invalid value in it as a fault.
     fn check(&self) -> Result<(), String> {
         self.table.iter().try_for_each(check_table)?;
         let mut parts = 0;
@@ -278,7 +278,7 @@ impl Course {
     }
 }
 
-/// A header has its format, whatever else it holds.
+/// Every header has a format.
 fn parse_header(path: &Path, line: (usize, &str)) -> Result<SessionHeader, RecorderError> {
     #[derive(Deserialize)]
     struct Format {

@@ -13,7 +13,7 @@ use crate::{
     files::{
         bounds::check_ticks,
         folder::Folder,
-        intent::fulfil_what_was_left,
+        intent::finish_interrupted,
         limits::{MOST_EVENT_BYTES, MOST_SESSION_BYTES},
         log_file::read_whole_lines,
         segment_mark::SegmentMark,
@@ -26,7 +26,7 @@ use crate::{
     },
 };
 
-/// A recording in its folder, to be read. What a recording that was cut off lacks is not there, and no error.
+/// A recording in its folder, to be read. Lines that a truncated recording lacks are no error.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -76,10 +76,10 @@ impl RecordingReader {
     /// Opens the recording in a folder. If the program that made it was killed while it was undoing something, that is finished first.
     ///
     /// # Errors
-    /// The folder has no session log, or one that no recorder has written; or what was interrupted cannot be finished.
+    /// The folder has no session log, or one that no recorder has written; or an interrupted change cannot be finished.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
         let folder = Folder::existing(folder.as_ref());
-        fulfil_what_was_left(&folder)?;
+        finish_interrupted(&folder)?;
         let session = Session::read(folder.session())?;
         let end = session.commands.last().filter(|_| session.is_finished());
         let last_tick = match end {
@@ -270,7 +270,7 @@ impl RecordingReader {
         Ok(joints)
     }
 
-    /// The timeline: what happens in it, along its time.
+    /// The timeline: the events along its time.
     ///
     /// # Errors
     /// As for [`segments`](Self::segments).

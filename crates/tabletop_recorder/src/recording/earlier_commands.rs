@@ -19,7 +19,7 @@ pub(crate) struct EarlierCommands {
     /// Their number.
     count: usize,
     is_paused: bool,
-    /// The robot and what it shows outlive a scene.
+    /// The robot and its markers outlive a scene.
     has_used_robot: bool,
 }
 
@@ -101,7 +101,7 @@ impl EarlierCommands {
         }
     }
 
-    /// Notes what a command changes for longer than a scene stands. To be called for recorded commands, too.
+    /// Notes the effects of a command that outlive a scene. To be called for recorded commands, too.
     pub(crate) fn note_lasting(&mut self, command: &SimCommand) {
         match command {
             SimCommand::Clock(ClockCommand::SetPaused(paused)) => self.is_paused = *paused,
@@ -114,7 +114,7 @@ impl EarlierCommands {
         }
     }
 
-    /// Adds lines of a session log: what a recording has logged since it started. `None` if that is not known.
+    /// Adds the lines that a recording has logged since it started; `None` if they are not known.
     pub(crate) fn append_recorded(&mut self, lines: Option<&[u8]>) {
         match lines {
             Some(lines) => {

@@ -61,7 +61,7 @@ pub(crate) struct Episode {
     head: u64,
     undoable: Vec<SegmentStart>,
     redoable: Vec<UndoneSegment>,
-    /// The number of pictures that were written, also of what was undone.
+    /// The number of written pictures, those of undone segments included.
     pictures: usize,
 }
 

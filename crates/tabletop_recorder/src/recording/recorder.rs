@@ -225,7 +225,7 @@ pub(crate) fn ask_for_picture(
     }
 }
 
-/// Writes what this tick has brought, and ends the recording if a command does.
+/// Writes this tick, and ends the recording if a command does.
 pub(crate) fn record(
     mut recorder: ResMut<Recorder>,
     mut recording: ResMut<Recording>,
@@ -269,7 +269,7 @@ fn end_running(timeline: &mut ResMut<Timeline>) {
 }
 
 impl Recorder {
-    /// Ends a recording that cannot go on; what it has is kept.
+    /// Ends a recording that cannot go on; its files are kept.
     fn stop_on_error(
         &mut self,
         result: Result<(), RecorderError>,

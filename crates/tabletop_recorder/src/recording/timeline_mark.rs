@@ -1,4 +1,4 @@
-//! The timeline of a recording while it is made: what undo takes off its end, and redo puts there again.
+//! The timeline of a recording while it is made: the tail that undo takes off its end, and redo puts there again.
 
 use tabletop_core::{Timeline, TimelineGrip, TimelinePicture, TimelineSegment};
 
@@ -28,7 +28,7 @@ impl TimelineMark {
         }
     }
 
-    /// Takes off what has come after it.
+    /// Takes off everything after the mark.
     pub(crate) fn cut(self, timeline: &mut Timeline) -> TimelineTail {
         TimelineTail {
             segments: split_off(&mut timeline.segments, self.segments),

@@ -8,8 +8,8 @@ use tabletop_core::{
 
 use crate::recording::recorder::{IS_RUNNING, NONE_IS_RUNNING, refused};
 
-/// Stands in for [`RecorderPlugin`](crate::RecorderPlugin) where nothing is to be written: what is done between
-/// [`Start`] and [`Finish`] can be undone, and leaves no files.
+/// Stands in for [`RecorderPlugin`](crate::RecorderPlugin) where nothing is to be written: commands between
+/// [`Start`] and [`Finish`] can be undone, and leave no files.
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
 /// [`Start`]: RecordingCommand::Start

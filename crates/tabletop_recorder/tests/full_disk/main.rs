@@ -1,4 +1,4 @@
-//! A disk that is full ends a recording, and costs nothing of what was there.
+//! A full disk ends a recording, and costs none of the earlier lines.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 

@@ -42,7 +42,7 @@ fn recorder(place: &Place, storage: Storage, durability: Durability) -> App {
     })
 }
 
-/// Has every call fail in every way in turn, each in a recording of this script, and checks what is left of it.
+/// Has every call fail in every way in turn, each in a recording of this script, and checks the rest of it.
 fn try_every_fault(script: &Script) {
     let place = Place::in_memory();
     let counted = Storage::default();

@@ -1,4 +1,4 @@
-//! What the robot cannot pass.
+//! Obstacles, which the robot cannot pass.
 
 use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
 use tabletop_core::LimbId;

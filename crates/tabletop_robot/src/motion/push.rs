@@ -1,4 +1,4 @@
-//! What the robot pushes on its way.
+//! Objects that the robot pushes on its way.
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};

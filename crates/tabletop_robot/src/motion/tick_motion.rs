@@ -1,4 +1,4 @@
-//! What moves in a tick, and where.
+//! The motion of a tick: its bodies and their poses.
 
 use std::rc::Rc;
 

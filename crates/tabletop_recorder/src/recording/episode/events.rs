@@ -92,7 +92,7 @@ impl Episode {
         self.files.text.append_records(&lines)
     }
 
-    /// Puts what hands and grippers do on the timeline.
+    /// Puts the acts of hands and grippers on the timeline.
     pub(super) fn note_act(&self, fact: &SimFact, timeline: &mut Timeline) {
         let Some(act) = Act::of(fact) else {
             return;

@@ -17,7 +17,7 @@ use crate::{
 };
 
 impl Episode {
-    /// Writes what the end of a tick brings: a row for each object that has moved, and at a frame the moves and a picture.
+    /// Writes the end of a tick: a row for each object that has moved, and at a frame the moves and a picture.
     pub(crate) fn write_tick(
         &mut self,
         tick: SimTick,

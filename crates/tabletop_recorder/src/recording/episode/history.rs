@@ -78,7 +78,7 @@ impl Episode {
         Ok(())
     }
 
-    /// Brings back the segment that was undone last, in the place of what was recorded since.
+    /// Brings back the last undone segment, in the place of later lines.
     fn redo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
         let Some(undone) = self.redoable.pop() else {
             warn!(
