@@ -12,7 +12,8 @@
 //! | [`history`] | undo and redo |
 //! | [`demonstrator`] | the invisible hands |
 //! | [`mechanism`] | controls and bonds |
-//! | [`robot`] | the robot: its look, motion and grips |
+//! | [`robot`] | the robot: its description, bodies, look and cameras |
+//! | [`drive`] | the simulated drive that moves it: motors, pushes, grips |
 //! | [`kinematics`] | robots from URDF |
 //! | [`controller`] | the seam between the robot and what acts for it |
 //! | [`camera`] | the view of the robot's head camera |
@@ -49,6 +50,7 @@ pub use tabletop_camera as camera;
 pub use tabletop_controller as controller;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
+pub use tabletop_drive as drive;
 pub use tabletop_episodes::{
     imitation, multiplication, robot_body, run_episodes, scene_at_beginning, shown_task, soak,
 };

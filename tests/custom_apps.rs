@@ -2,9 +2,10 @@
 
 use bevy::prelude::*;
 use tabletop::{
-    camera::CameraPlugin, demonstrator::DemonstratorPlugin, history::HistoryPlugin,
-    mechanism::MechanismPlugin, physics::PhysicsPlugin, prelude::*, robot::RobotPlugin,
-    scenario::ScenarioPlugin, scene::ScenePlugin, script::ScriptPlugin, xml::XmlPlugin,
+    camera::CameraPlugin, demonstrator::DemonstratorPlugin, drive::DrivePlugin,
+    history::HistoryPlugin, mechanism::MechanismPlugin, physics::PhysicsPlugin, prelude::*,
+    robot::RobotPlugin, scenario::ScenarioPlugin, scene::ScenePlugin, script::ScriptPlugin,
+    xml::XmlPlugin,
 };
 
 /// Steps an app with the core and these plugins, and gives it commands for all of them.
@@ -58,7 +59,7 @@ fn try_out(plugins: impl Fn(&mut App)) {
 #[test]
 fn each_plugin_runs_alone() {
     type Add = fn(&mut App);
-    let plugins: [(&str, Add); 11] = [
+    let plugins: [(&str, Add); 12] = [
         ("core", |_| {}),
         ("camera", |app| {
             app.add_plugins(CameraPlugin);
@@ -77,6 +78,9 @@ fn each_plugin_runs_alone() {
         }),
         ("robot", |app| {
             app.add_plugins(RobotPlugin::default());
+        }),
+        ("drive", |app| {
+            app.add_plugins(DrivePlugin);
         }),
         ("scenario", |app| {
             app.add_plugins(ScenarioPlugin);

@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 31] = [
+const RULES: [Rule; 32] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -77,6 +77,18 @@ const RULES: [Rule; 31] = [
         ],
     )
     .with_rapier(),
+    Rule::new(
+        "tabletop_drive",
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_history",
+            "tabletop_kinematics",
+            "tabletop_physics",
+            "tabletop_robot",
+        ],
+    )
+    .with_rapier(),
     Rule::new("tabletop_engine", &[]),
     Rule::new(
         "tabletop_script",
@@ -130,6 +142,7 @@ const RULES: [Rule; 31] = [
             "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
+            "tabletop_drive",
             "tabletop_demonstrator",
             "tabletop_history",
             "tabletop_mechanism",
@@ -214,6 +227,7 @@ const RULES: [Rule; 31] = [
             "tabletop_xml",
             "tabletop_physics",
             "tabletop_scene",
+            "tabletop_drive",
             "tabletop_demonstrator",
             "tabletop_export",
             "tabletop_episodes",

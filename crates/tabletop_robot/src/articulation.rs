@@ -2,5 +2,4 @@
 
 pub(crate) mod link_entities;
 pub(crate) mod passive_links;
-pub(crate) mod self_collision;
 pub(crate) mod tree;

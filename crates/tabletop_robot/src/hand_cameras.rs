@@ -1,22 +1,25 @@
 //! The places of the cameras in the robot's hands.
 
 use bevy::prelude::*;
-use tabletop_core::{HandImages, Robot};
+use tabletop_core::{HandImages, Robot, Table};
 use tabletop_geometry::Pose;
 
-use crate::{
-    articulation::tree::{Articulation, Posture, in_units},
-    motion::view::RobotView,
+use crate::articulation::{
+    link_entities::positions,
+    tree::{Articulation, Posture, in_units},
 };
 
 /// Places the hand cameras that are asked for pictures where the joints have brought them.
 pub(crate) fn place_hand_cameras(
-    known: RobotView,
+    articulation: Res<Articulation>,
+    tables: Query<&Table>,
     robot: Res<Robot>,
     mut images: ResMut<HandImages>,
 ) {
-    let posture = known.posture(&robot, None);
-    let place = |link| link_pose(&known.articulation, &posture, link);
+    let table = tables.iter().next().copied().unwrap_or_default();
+    let base = articulation.layout.base.pose(&table);
+    let posture = articulation.posture(&positions(&robot), base);
+    let place = |link| link_pose(&articulation, &posture, link);
     let poses = images.asked().iter();
     let poses = poses.map(|camera| Some(place(&camera.link)? * camera.mount));
     images.poses = poses.collect();
@@ -33,7 +36,7 @@ mod tests {
     use tabletop_core::RobotLayout;
 
     use super::*;
-    use crate::{articulation::link_entities::positions, description::Description};
+    use crate::description::Description;
 
     #[test]
     fn they_look_down_past_the_fingers_whichever_frame_the_description_has() {

@@ -5,6 +5,7 @@ use tabletop_camera::CameraPlugin;
 use tabletop_controller::ControllerPlugin;
 use tabletop_core::CorePlugin;
 use tabletop_demonstrator::DemonstratorPlugin;
+use tabletop_drive::DrivePlugin;
 use tabletop_history::HistoryPlugin;
 use tabletop_mechanism::MechanismPlugin;
 use tabletop_physics::PhysicsPlugin;
@@ -18,7 +19,7 @@ use tabletop_xml::XmlPlugin;
 use crate::{reset::ResetPlugin, settings::RecordedSettingsPlugin, shipped::ShippedFilesPlugin};
 
 /// The simulator without display: [`CorePlugin`], [`HistoryPlugin`], [`XmlPlugin`], [`PhysicsPlugin`], [`ScenePlugin`],
-/// [`DemonstratorPlugin`], [`MechanismPlugin`], [`RobotPlugin`], [`CameraPlugin`], [`ControllerPlugin`], [`RecorderPlugin`],
+/// [`DemonstratorPlugin`], [`MechanismPlugin`], [`RobotPlugin`], [`DrivePlugin`], [`CameraPlugin`], [`ControllerPlugin`], [`RecorderPlugin`],
 /// [`ScriptPlugin`], [`ScenarioPlugin`], [`RecordedSettingsPlugin`], [`ShippedFilesPlugin`] and [`ResetPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
@@ -34,6 +35,7 @@ impl PluginGroup for TabletopSimPlugins {
             .add(DemonstratorPlugin)
             .add(MechanismPlugin)
             .add(RobotPlugin::default())
+            .add(DrivePlugin)
             .add(CameraPlugin)
             .add(ControllerPlugin)
             .add(RecorderPlugin::default())

@@ -25,13 +25,13 @@ pub struct RobotLink {
 
 /// The robot's bodies, by their numbers; none before it is shown for the first time.
 #[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct LinkEntities(pub Vec<Entity>);
+pub struct LinkEntities(pub Vec<Entity>);
 
 /// Friction of the robot's surface. The friction of a contact is the product of both surfaces'.
-pub(crate) const FRICTION: f32 = 1.0;
+pub const FRICTION: f32 = 1.0;
 
 /// Makes the bodies, disabled.
-pub(crate) fn spawn(world: &mut World) -> Result {
+pub fn spawn(world: &mut World) -> Result {
     let articulation = world.resource::<Articulation>().clone();
     let base = base(world);
     let posture = articulation.posture(&positions(world.resource::<Robot>()), base);
@@ -71,7 +71,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
 }
 
 /// Lets the bodies meet others, or not.
-pub(crate) fn enable(world: &mut World, enabled: bool) -> Result {
+pub fn enable(world: &mut World, enabled: bool) -> Result {
     let links = world.resource::<LinkEntities>().clone();
     set_enabled(world, &links.0, enabled)
 }
@@ -92,12 +92,12 @@ fn collider(body: &Body) -> Option<Collider> {
 }
 
 /// The positions of the joints.
-pub(crate) fn positions(robot: &Robot) -> Positions {
+pub fn positions(robot: &Robot) -> Positions {
     robot.joints.iter().map(|joint| joint.position).collect()
 }
 
 /// Pose of the torso's frame in front of the present table.
-pub(crate) fn base(world: &mut World) -> Pose {
+pub fn base(world: &mut World) -> Pose {
     let mut tables = world.query::<&Table>();
     let table = tables.iter(world).next().copied();
     world
@@ -108,7 +108,7 @@ pub(crate) fn base(world: &mut World) -> Pose {
 }
 
 /// Lets these links push nothing, and all others push the objects that they meet.
-pub(crate) fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
+pub fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
     let links = world.resource::<LinkEntities>().clone();
     world.resource_scope(|world, mut now: Mut<PassiveLinks>| {
         let mut contexts =
@@ -119,7 +119,7 @@ pub(crate) fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
 }
 
 /// Puts the bodies where the posture has them, without pushing anything on the way.
-pub(crate) fn teleport(world: &mut World) -> Result {
+pub fn teleport(world: &mut World) -> Result {
     let base = base(world);
     let posture = world
         .resource::<Articulation>()

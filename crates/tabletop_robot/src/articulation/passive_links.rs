@@ -5,7 +5,7 @@ use bevy_rapier3d::prelude::*;
 
 /// The links that push nothing; true at the number of each. They go where the robot moves them, but Rapier computes no contacts for them.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct PassiveLinks {
+pub struct PassiveLinks {
     /// The links that are far from every free object. They sleep: two dozen moving bodies would be most of a physics step.
     far: Vec<bool>,
     /// The links that overlap an object: the robot appeared there, or something pressed the object against them. They would press it into the

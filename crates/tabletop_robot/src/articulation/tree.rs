@@ -29,11 +29,11 @@ const PLAY: f32 = 0.015;
 const ALMOST_OPEN: f32 = 0.99;
 
 /// One number for every joint of the robot, by [`JointId`].
-pub(crate) type Positions = SmallVec<[f64; 24]>;
+pub type Positions = SmallVec<[f64; 24]>;
 
 /// A rigid part of the robot.
 #[derive(Clone, Debug)]
-pub(crate) struct Body {
+pub struct Body {
     /// The link's name in the description; for fingers `left-gripper-right-finger`.
     pub id: String,
     /// Its name.
@@ -50,7 +50,7 @@ pub(crate) struct Body {
 
 /// The carrier of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Carrier {
+pub enum Carrier {
     /// It is a link.
     Link(LinkId),
     /// It is a finger of a gripper, on this side of the opening: -1 left, 1 right. Its x points inwards.
@@ -59,7 +59,7 @@ pub(crate) enum Carrier {
 
 /// The position of a body along the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum TreePosition {
+pub enum TreePosition {
     /// The body does not move.
     Trunk,
     /// The body turns with the neck.
@@ -70,7 +70,7 @@ pub(crate) enum TreePosition {
 
 /// The robot's model, and the parts of it that the simulator moves.
 #[derive(Resource, Clone, Debug)]
-pub(crate) struct Articulation {
+pub struct Articulation {
     model: RobotModel,
     /// Its limbs and joints.
     pub layout: RobotLayout,
@@ -95,7 +95,7 @@ struct Limb {
 
 /// The posture of the robot: the frames of its links and the poses of its bodies.
 #[derive(Clone, Debug)]
-pub(crate) struct Posture {
+pub struct Posture {
     positions: Positions,
     values: JointValues,
     links: MovingFrames,
@@ -422,7 +422,7 @@ fn frame_on(model: &RobotModel, frames: &[LinkFrame]) -> Result<(LinkId, DAffine
 }
 
 /// A frame of the model as a pose in units.
-pub(crate) fn in_units(frame: DAffine3) -> Pose {
+pub fn in_units(frame: DAffine3) -> Pose {
     let rotation = DQuat::from_mat3(&frame.matrix3).normalize();
     Pose::new(
         (frame.translation * UNITS_PER_METER).as_vec3(),
@@ -431,7 +431,7 @@ pub(crate) fn in_units(frame: DAffine3) -> Pose {
 }
 
 /// A pose in units as a frame of the model.
-pub(crate) fn in_meters(pose: Pose) -> DAffine3 {
+pub fn in_meters(pose: Pose) -> DAffine3 {
     DAffine3::from_rotation_translation(
         pose.rotation.as_dquat().normalize(),
         pose.location.as_dvec3() / UNITS_PER_METER,

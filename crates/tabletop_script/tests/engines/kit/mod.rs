@@ -16,6 +16,7 @@ use tabletop_core::{
     SimSystems, SimTick, StepApp as _, TICK_SECONDS, WriteCommand as _,
 };
 use tabletop_demonstrator::DemonstratorPlugin;
+use tabletop_drive::DrivePlugin;
 use tabletop_physics::PhysicsPlugin;
 use tabletop_robot::RobotPlugin;
 use tabletop_scene::ScenePlugin;
@@ -125,6 +126,7 @@ impl Stage {
             ScenePlugin,
             DemonstratorPlugin,
             RobotPlugin::default(),
+            DrivePlugin,
             CameraPlugin,
         ))
         .add_plugins(ScriptPlugin { settings })

@@ -4,15 +4,9 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Robot, RobotFact, SimFact, Table};
 
-use crate::{
-    articulation::{
-        link_entities::{LinkEntities, make_passive, teleport},
-        passive_links::PassiveLinks,
-    },
-    command::joint_targets::JointTargets,
-    gripper::grips::Grips,
-    motion::view::RobotView,
-};
+use tabletop_robot::{LinkEntities, PassiveLinks, make_passive, teleport};
+
+use crate::{command::joint_targets::JointTargets, gripper::grips::Grips, motion::view::RobotView};
 
 /// Whether a table has come at which the robot does not stand yet.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,10 +5,7 @@ use tabletop_core::{LimbId, Robot};
 use tabletop_geometry::{Pose, UNITS_PER_METER};
 use tabletop_kinematics::Target;
 
-use crate::{
-    articulation::link_entities::base,
-    articulation::tree::{Articulation, in_meters},
-};
+use tabletop_robot::{Articulation, base, in_meters};
 
 /// Angles of a limb that bring its end effector to a pose in the table's frame, near its present angles.
 pub(crate) fn solve(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, String> {

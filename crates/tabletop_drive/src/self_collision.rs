@@ -5,7 +5,7 @@ use tabletop_core::JointRole;
 use tabletop_geometry::Pose;
 use tabletop_physics::SweptSolid;
 
-use crate::articulation::tree::{Articulation, Body, Positions, TreePosition};
+use tabletop_robot::{Articulation, Body, Positions, TreePosition};
 
 /// Number of joints between two bodies of a limb that can collide.
 const JOINTS_BETWEEN: usize = 3;

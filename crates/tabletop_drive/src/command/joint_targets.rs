@@ -222,7 +222,7 @@ mod tests {
     use tabletop_core::Robot;
 
     use super::*;
-    use crate::articulation::link_entities::positions;
+    use tabletop_robot::positions;
 
     const E1: JointId = JointId(3);
     const RIGHT: LimbId = LimbId(1);

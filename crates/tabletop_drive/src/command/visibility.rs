@@ -3,10 +3,10 @@
 use bevy::prelude::*;
 use tabletop_core::{CommandId, Robot, RobotFact, RobotLayout, SimFact};
 
+use tabletop_robot::{LinkEntities, enable, spawn};
+
 use crate::{
-    articulation::link_entities::{LinkEntities, enable, spawn},
-    gripper::grips,
-    motion::placement::{leave_obstacles, stand_at_table},
+    gripper::grips, motion::placement::leave_obstacles, motion::placement::stand_at_table,
 };
 
 /// Puts the robot at the table, or takes it away. Its grippers first let go of everything.

@@ -8,15 +8,12 @@ use tabletop_physics::{
     limits::{HALVINGS, LEAST_PART, MOST_SWEEPING_STEPS, SWEEPING_STEP},
 };
 
+use tabletop_robot::Positions;
+
 use crate::{
-    articulation::tree::Positions,
-    command::joint_targets::{JointTargets, Setpoint},
-    gripper::{
-        alignment::PRESS,
-        closing::{Closing, Graspable, close},
-    },
-    motion::tick_motion::TickMotion,
-    owner::Owner,
+    command::joint_targets::JointTargets, command::joint_targets::Setpoint,
+    gripper::alignment::PRESS, gripper::closing::Closing, gripper::closing::Graspable,
+    gripper::closing::close, motion::tick_motion::TickMotion, owner::Owner,
 };
 
 /// Largest distance from an end effector, in units, of an object between its fingers.

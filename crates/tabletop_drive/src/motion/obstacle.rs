@@ -4,13 +4,11 @@ use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
 use tabletop_core::LimbId;
 use tabletop_physics::{SweptSolid, are_near, limits::MARGIN};
 
+use tabletop_robot::Positions;
+
 use crate::{
-    articulation::tree::Positions,
-    motion::{
-        poses::{Poses, ROUNDING},
-        tick_motion::{TickMotion, is_of},
-    },
-    owner::Owner,
+    motion::poses::Poses, motion::poses::ROUNDING, motion::tick_motion::TickMotion,
+    motion::tick_motion::is_of, owner::Owner,
 };
 
 impl TickMotion<'_> {

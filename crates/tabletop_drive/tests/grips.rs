@@ -9,8 +9,8 @@ use tabletop_core::{
     Arm, Drive, HandCommand, LidBoxSpec, ObjectIndex, Part, Robot, RobotCommand, RobotFact,
     RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
 };
+use tabletop_drive::STEEPEST_GRIP;
 use tabletop_geometry::{Pose, Rgb};
-use tabletop_robot::STEEPEST_GRIP;
 
 const ARM: Arm = Arm::Right;
 

@@ -9,14 +9,14 @@ use tabletop_core::{LimbId, Robot, RobotLayout, TICK_SECONDS};
 use tabletop_geometry::UNITS_PER_METER;
 use tabletop_kinematics::Load;
 
+use tabletop_robot::{Articulation, Positions};
+
 use crate::{
-    articulation::tree::{Articulation, Positions},
-    command::joint_targets::{JointTargets, Setpoint},
-    dynamics::impulse::ContactLoad,
-    dynamics::limb_dynamics::{DynamicsStep, LimbDynamics},
-    dynamics::matrix::{Joints, Matrix, each, each_pair},
-    dynamics::motor::{Motor, MotorTask, STRETCH},
-    motion::tick_motion::TickMotion,
+    command::joint_targets::JointTargets, command::joint_targets::Setpoint,
+    dynamics::impulse::ContactLoad, dynamics::limb_dynamics::DynamicsStep,
+    dynamics::limb_dynamics::LimbDynamics, dynamics::matrix::Joints, dynamics::matrix::Matrix,
+    dynamics::matrix::each, dynamics::matrix::each_pair, dynamics::motor::Motor,
+    dynamics::motor::MotorTask, dynamics::motor::STRETCH, motion::tick_motion::TickMotion,
 };
 
 /// Share of a motor's torque that slows a joint down before its goal.

@@ -14,12 +14,11 @@ use tabletop_core::{LimbId, TICK_SECONDS};
 use tabletop_geometry::UNITS_PER_METER;
 use tabletop_physics::{FreeObject, impulse_share, limits::TOUCHING};
 
+use tabletop_robot::{FRICTION, TreePosition, in_meters};
+
 use crate::{
-    articulation::link_entities::FRICTION,
-    articulation::tree::{TreePosition, in_meters},
-    dynamics::impulse::{ContactLoad, FrictionAxis},
-    dynamics::matrix::{Joints, each},
-    motion::tick_motion::TickMotion,
+    dynamics::impulse::ContactLoad, dynamics::impulse::FrictionAxis, dynamics::matrix::Joints,
+    dynamics::matrix::each, motion::tick_motion::TickMotion,
 };
 
 /// Cosine of the largest angle to a direction at which something fixed is straight ahead.

@@ -3,7 +3,7 @@
 use bevy_rapier3d::parry::bounding_volume::Aabb;
 use tabletop_geometry::Pose;
 
-use crate::articulation::tree::{Articulation, Positions, Posture};
+use tabletop_robot::{Articulation, Positions, Posture};
 
 /// Margin of boxes around bodies, in units, for rounding errors.
 pub(super) const ROUNDING: f32 = 1e-3;

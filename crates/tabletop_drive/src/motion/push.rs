@@ -8,11 +8,9 @@ use tabletop_physics::{
     limits::{LEAST_PART, PRESSED},
 };
 
-use crate::{
-    articulation::tree::Positions,
-    motion::{poses::Poses, tick_motion::TickMotion},
-    owner::Owner,
-};
+use tabletop_robot::Positions;
+
+use crate::{motion::poses::Poses, motion::tick_motion::TickMotion, owner::Owner};
 
 impl TickMotion<'_> {
     /// The part of the way to these positions that an arm can go in a tick with the objects that it pushes, and the object that it squeezes most.

@@ -8,12 +8,9 @@ use tabletop_core::LimbId;
 use tabletop_geometry::Pose;
 use tabletop_physics::{Convex, Environment, SweptSolid, limits::REACH};
 
-use crate::{
-    articulation::self_collision::SelfCollisionMatrix,
-    articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
-    motion::poses::Poses,
-    owner::Owner,
-};
+use tabletop_robot::{Articulation, Body, Carrier, Positions, Posture, TreePosition};
+
+use crate::{motion::poses::Poses, owner::Owner, self_collision::SelfCollisionMatrix};
 
 /// Number of answers that are remembered.
 const MOST_ASKED: usize = 4;

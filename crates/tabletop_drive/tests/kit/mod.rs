@@ -8,6 +8,7 @@ use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
 use tabletop_core::CommandId;
 use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
+use tabletop_drive::DrivePlugin;
 use tabletop_geometry::*;
 use tabletop_history::HistoryPlugin;
 use tabletop_physics::PhysicsPlugin;
@@ -55,7 +56,7 @@ impl Stage {
             HistoryPlugin::default(),
             PhysicsPlugin::default(),
         ))
-        .add_plugins((ScenePlugin, DemonstratorPlugin, robot))
+        .add_plugins((ScenePlugin, DemonstratorPlugin, robot, DrivePlugin))
         .start();
         let mut stage = Self {
             app,

@@ -5,19 +5,12 @@ use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
 use tabletop_core::{LimbId, LimbName, Robot, RobotFact, RobotMode, SimFact};
 use tabletop_physics::{MovedBody, PhysicsSettings};
 
+use tabletop_robot::{LinkEntities, PassiveLinks, Posture, positions};
+
 use crate::{
-    articulation::{
-        link_entities::{LinkEntities, positions},
-        passive_links::PassiveLinks,
-        tree::Posture,
-    },
-    command::joint_targets::JointTargets,
-    dynamics::{contact_loads::contact_loads, motors::Motors},
-    gripper::{
-        alignment::{Judgement, judge},
-        closing::{Closing, Touched},
-        grips::{self, Grips},
-    },
+    command::joint_targets::JointTargets, dynamics::contact_loads::contact_loads,
+    dynamics::motors::Motors, gripper::alignment::Judgement, gripper::alignment::judge,
+    gripper::closing::Closing, gripper::closing::Touched, gripper::grips, gripper::grips::Grips,
     motion::view::RobotView,
 };
 

@@ -8,19 +8,12 @@ use tabletop_core::{Held, Joint, LimbId, ObjectSpec, Obstacle, Robot, Table};
 use tabletop_geometry::Pose;
 use tabletop_physics::{Environment, convex_parts};
 
+use tabletop_robot::{Articulation, LinkEntities, Posture, RobotLink, positions};
+
 use crate::{
-    articulation::{
-        link_entities::{LinkEntities, RobotLink, positions},
-        self_collision::SelfCollisionMatrix,
-        tree::{Articulation, Posture},
-    },
-    command::joint_targets::JointTargets,
-    gripper::grips::Grips,
-    motion::{
-        poses::Poses,
-        tick_motion::{Carried, TickMotion, reach},
-    },
-    owner::Owner,
+    command::joint_targets::JointTargets, gripper::grips::Grips, motion::poses::Poses,
+    motion::tick_motion::Carried, motion::tick_motion::TickMotion, motion::tick_motion::reach,
+    owner::Owner, self_collision::SelfCollisionMatrix,
 };
 
 /// The robot's view of the world.

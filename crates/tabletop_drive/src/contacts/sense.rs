@@ -4,11 +4,11 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{ObjectIndex, Robot, RobotContact, Table};
 
+use tabletop_robot::{Articulation, Carrier, LinkEntities};
+
 use crate::{
-    articulation::link_entities::LinkEntities,
-    articulation::tree::{Articulation, Carrier},
-    contacts::contact::{Contact, Thing, add_near, add_pressed},
-    gripper::grips::Grips,
+    contacts::contact::Contact, contacts::contact::Thing, contacts::contact::add_near,
+    contacts::contact::add_pressed, gripper::grips::Grips,
 };
 
 /// Writes the robot's grips and contacts.
