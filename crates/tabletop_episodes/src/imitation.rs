@@ -7,11 +7,11 @@ use tabletop_core::{
     JointKind, Random, RobotCommand, RobotLayout, SceneItem, SceneSpec, StepApp as _,
     WriteCommand as _,
 };
-use tabletop_geometry::Pose;
+use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_planner::{
     LimbOrder, Piece, PlanningStage, RobotBody, Stopped, drives, is_feasible, scatter,
 };
-use tabletop_task::{Arrangement, PlacedSolid, Requirements, Task};
+use tabletop_task::{Arrangement, Requirements, Task};
 
 /// An app whose robot is moved by commands, as scripts move it.
 pub struct AppStage<'a> {

@@ -1,4 +1,4 @@
-//! Geometry: poses, twists, coloured solids, their bounds, and the rays that meet them.
+//! Geometry: poses, twists, coloured solids, their bounds and distances, and the rays that meet them.
 //!
 //! Everything is in the table's frame or in one that is said: right-handed, **Z up**, lengths in units of 10 cm, angles in radians.
 
@@ -6,6 +6,7 @@
 
 mod bounds;
 mod color;
+mod placed_solid;
 mod polyhedron;
 mod pose;
 mod ray;
@@ -16,6 +17,7 @@ mod twist;
 
 pub use bounds::{Bounds, PAIR_GAP};
 pub use color::{ColorError, NAMED_COLORS, Rgb};
+pub use placed_solid::PlacedSolid;
 pub use polyhedron::{MOST_SIDES, Polyhedron, PolyhedronError, ROUND_SIDES};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use solid::{Primitive, Solid};

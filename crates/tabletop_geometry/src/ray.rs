@@ -17,8 +17,21 @@ impl Primitive {
 }
 
 impl Solid {
+    /// True for a point of the solid.
+    pub(crate) fn contains(&self, point: Vec3) -> bool {
+        match self {
+            Self::Cuboid(span) => point.abs().cmple(*span / 2.0).all(),
+            Self::Cylinder { radius, yspan } => {
+                point.y.abs() <= yspan / 2.0
+                    && point.with_y(0.0).length_squared() <= radius * radius
+            }
+            Self::Ball(radius) => point.length_squared() <= radius * radius,
+            Self::Polyhedron(polyhedron) => polyhedron.contains(point),
+        }
+    }
+
     /// The point where a ray enters the solid, as a factor of its direction.
-    fn entry(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
+    pub(crate) fn entry(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
         // The points where the straight line enters and leaves. It misses the solid if it leaves before it enters.
         let (enter, leave) = match *self {
             Self::Cuboid(span) => {

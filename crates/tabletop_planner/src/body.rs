@@ -3,12 +3,11 @@
 use bevy::math::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use tabletop_controller::{Angles, angles};
 use tabletop_core::{LimbLayout, LinkFrame, RobotLayout, Table};
-use tabletop_geometry::{Pose, Solid, UNITS_PER_METER};
+use tabletop_geometry::{PlacedSolid, Pose, Solid, UNITS_PER_METER};
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, MOST_ARM_JOINTS, ModelError,
     RobotModel, Target,
 };
-use tabletop_task::PlacedSolid;
 
 use crate::arm_length::ArmLength;
 

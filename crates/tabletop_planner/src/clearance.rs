@@ -5,8 +5,7 @@ use std::cell::RefCell;
 use bevy::math::{Quat, Vec3};
 use tabletop_controller::{Angles, Sight};
 use tabletop_core::Table;
-use tabletop_geometry::Pose;
-use tabletop_task::PlacedSolid;
+use tabletop_geometry::{PlacedSolid, Pose};
 
 use crate::{
     body::{LinkSolid, RobotBody},

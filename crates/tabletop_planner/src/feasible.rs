@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use tabletop_controller::Sight;
-use tabletop_geometry::Pose;
-use tabletop_task::{Binding, PlaceRange, PlacedSolid, Relation, Task};
+use tabletop_geometry::{PlacedSolid, Pose};
+use tabletop_task::{Binding, PlaceRange, Relation, Task};
 
 use crate::{
     goals::{goal_poses, is_over},

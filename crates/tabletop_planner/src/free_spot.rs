@@ -2,8 +2,7 @@
 
 use bevy::math::{Quat, Vec3};
 use tabletop_controller::Sight;
-use tabletop_geometry::Pose;
-use tabletop_task::PlacedSolid;
+use tabletop_geometry::{PlacedSolid, Pose};
 
 use crate::{
     body::RobotBody,

@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use bevy::math::{Quat, Vec3};
 use tabletop_controller::{SeenObject, Sight};
 use tabletop_core::Table;
-use tabletop_geometry::Pose;
+use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_task::{
-    Arrangement, Binding, PlaceRange, PlacedSolid, Reference, Relation, Symmetry, Task, TaskStep,
-    twist_about,
+    Arrangement, Binding, PlaceRange, Reference, Relation, Symmetry, Task, TaskStep, twist_about,
 };
 
 use crate::{

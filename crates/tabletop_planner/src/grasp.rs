@@ -4,8 +4,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::Shape;
-use tabletop_geometry::{Pose, Solid};
-use tabletop_task::PlacedSolid;
+use tabletop_geometry::{PlacedSolid, Pose, Solid};
 
 /// From where an object is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

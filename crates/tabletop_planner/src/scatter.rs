@@ -4,8 +4,8 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Random, Table};
-use tabletop_geometry::Pose;
-use tabletop_task::{Arrangement, PlacedSolid};
+use tabletop_geometry::{PlacedSolid, Pose};
+use tabletop_task::Arrangement;
 
 use crate::body::RobotBody;
 

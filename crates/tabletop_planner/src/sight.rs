@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use bevy::math::Vec3;
 use tabletop_controller::{SeenObject, Sight};
-use tabletop_geometry::Pose;
-use tabletop_task::{Arrangement, PlacedSolid};
+use tabletop_geometry::{PlacedSolid, Pose};
+use tabletop_task::Arrangement;
 
 /// Depth to which a part that is above an object may be in it, in units.
 const PLAY: f32 = 0.05;

@@ -2,8 +2,8 @@
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::Shape;
-use tabletop_geometry::Pose;
-use tabletop_task::{PlacedSolid, Symmetry};
+use tabletop_geometry::{PlacedSolid, Pose};
+use tabletop_task::Symmetry;
 
 /// Angle by which the table is thought to be tilted to find the edges of a side, in rad.
 const TILT: f32 = 0.02;

@@ -4,9 +4,7 @@ use std::{collections::BTreeMap, f32::consts::TAU};
 
 use bevy::math::Vec3;
 use tabletop_core::Shape;
-use tabletop_geometry::Pose;
-
-use crate::convex::PlacedSolid;
+use tabletop_geometry::{PlacedSolid, Pose};
 
 /// Objects with their poses at one moment.
 #[derive(Clone, Debug, Default)]

@@ -2,12 +2,9 @@
 
 use bevy::math::Vec3;
 use tabletop_core::{JointKind, JointSpec, ObjectSpec, Shape};
-use tabletop_geometry::{Pose, Rgb};
+use tabletop_geometry::{PlacedSolid, Pose, Rgb};
 
-use crate::{
-    convex::PlacedSolid,
-    demonstration::{Demonstration, ShownObject},
-};
+use crate::demonstration::{Demonstration, ShownObject};
 
 /// Other knowledge of the objects of a recording: the task file that was on the table.
 #[derive(Clone, Debug, Default)]

@@ -17,7 +17,6 @@
 mod arrangement;
 mod assignment;
 mod binding;
-mod convex;
 mod demonstration;
 mod described;
 mod detour;
@@ -45,7 +44,6 @@ mod understanding;
 
 pub use arrangement::Arrangement;
 pub use binding::{Binding, Unbound};
-pub use convex::PlacedSolid;
 pub use demonstration::{Demonstration, HandAct, HandDeed, ShownObject};
 pub use detour::{Detour, DetourKind};
 pub use furniture::Furniture;

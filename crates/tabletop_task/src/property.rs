@@ -131,7 +131,7 @@ fn around(shape: &Shape) -> Vec3 {
     let solids: Vec<_> = shape
         .colliding()
         .iter()
-        .map(|solid| crate::convex::PlacedSolid::of(solid, tabletop_geometry::Pose::IDENTITY))
+        .map(|solid| tabletop_geometry::PlacedSolid::of(solid, tabletop_geometry::Pose::IDENTITY))
         .collect();
     let reach = |way: Vec3| {
         let all = solids.iter().map(|solid| solid.farthest(way).dot(way));

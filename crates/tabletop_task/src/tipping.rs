@@ -5,9 +5,9 @@ use std::f32::consts::FRAC_PI_4;
 use bevy::math::Vec3;
 use serde::{Deserialize, Serialize};
 use tabletop_core::Shape;
-use tabletop_geometry::Pose;
+use tabletop_geometry::{PlacedSolid, Pose};
 
-use crate::{convex::PlacedSolid, symmetry::Symmetry};
+use crate::symmetry::Symmetry;
 
 /// The way in which an object comes to lie on another of its sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,11 +7,10 @@ use tabletop_controller::Sight;
 use tabletop_core::{
     Hand, HandCommand, Hands, ObjectIndex, SimTick, StepApp as _, WriteCommand as _,
 };
-use tabletop_geometry::Pose;
+use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_planner::{Arranged as _, Before, PlanFailure, Solids as _, is_met, undone};
 use tabletop_task::{
-    Binding, Demonstration, PlaceRange, PlacedSolid, Reference, Relation, Task, TaskStep,
-    angle_between,
+    Binding, Demonstration, PlaceRange, Reference, Relation, Task, TaskStep, angle_between,
 };
 
 use super::way::{CarriedWay, WayPoint};

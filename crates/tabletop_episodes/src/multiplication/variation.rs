@@ -7,9 +7,9 @@ use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_core::{
     HeadCamera, LIGHT, Light, ObjectSpec, Random, SceneItem, SceneSpec, Shape, Table,
 };
-use tabletop_geometry::{NAMED_COLORS, Pose, Rgb};
+use tabletop_geometry::{NAMED_COLORS, PlacedSolid, Pose, Rgb};
 use tabletop_planner::RobotBody;
-use tabletop_task::{PlaceRange, PlacedSolid, Reference, Requirements, Task};
+use tabletop_task::{PlaceRange, Reference, Requirements, Task};
 
 use crate::imitation::scattered;
 

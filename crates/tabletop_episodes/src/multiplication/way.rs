@@ -2,8 +2,8 @@
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Hand, Shape, SimTick};
-use tabletop_geometry::{Pose, Primitive};
-use tabletop_task::{Demonstration, HandDeed, PlacedSolid, Reference, TaskStep, angle_between};
+use tabletop_geometry::{PlacedSolid, Pose, Primitive};
+use tabletop_task::{Demonstration, HandDeed, Reference, TaskStep, angle_between};
 
 /// The way on which the object of a step was carried.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use bevy::math::{Quat, Vec3};
 use tabletop_controller::{SeenObject, Sight};
-use tabletop_geometry::Pose;
-use tabletop_task::{PlaceRange, PlacedSolid, Relation, TaskStep};
+use tabletop_geometry::{PlacedSolid, Pose};
+use tabletop_task::{PlaceRange, Relation, TaskStep};
 
 use super::{Imitator, slider::Slider};
 use crate::{

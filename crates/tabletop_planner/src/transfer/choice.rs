@@ -3,8 +3,8 @@
 use std::{cell::Cell, collections::BTreeMap};
 
 use tabletop_controller::{Angles, SeenObject, Sight};
-use tabletop_geometry::Pose;
-use tabletop_task::{PlacedSolid, angle_between};
+use tabletop_geometry::{PlacedSolid, Pose};
+use tabletop_task::angle_between;
 
 use super::{BESIDE, PAIRS, Transfer, above_place};
 use crate::{

@@ -1,7 +1,8 @@
-//! Distances between convex solids (Gilbert, Johnson and Keerthi's algorithm).
+//! Convex solids with their poses, and their distances (Gilbert, Johnson and Keerthi's algorithm).
 
 use bevy::math::{Vec2, Vec3, Vec3Swizzles as _};
-use tabletop_geometry::{Bounds, Pose, Primitive, Solid};
+
+use crate::{Bounds, Pose, Primitive, Solid};
 
 /// A convex solid with its pose, in the table's frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,52 +128,7 @@ impl PlacedSolid {
     pub fn is_hit_by(&self, from: Vec3, towards: Vec3) -> bool {
         let origin = self.pose.inverse() * from;
         let ray = self.pose.rotation.inverse() * towards;
-        // The interval of the ray in which a coordinate is within its extent.
-        let slab = |from: f32, along: f32, half: f32| match along.abs() < 1e-9 {
-            true if from.abs() <= half => (f32::NEG_INFINITY, f32::INFINITY),
-            true => (f32::INFINITY, f32::NEG_INFINITY),
-            false => {
-                let [a, b] = [(-half - from) / along, (half - from) / along];
-                (a.min(b), a.max(b))
-            }
-        };
-        let disc = |from: Vec2, along: Vec2, radius: f32| {
-            let (a, b) = (along.length_squared(), from.dot(along));
-            let c = from.length_squared() - radius * radius;
-            let root = b * b - a * c;
-            match (a < 1e-12, root < 0.0) {
-                (true, _) if c <= 0.0 => (f32::NEG_INFINITY, f32::INFINITY),
-                (true, _) | (_, true) => (f32::INFINITY, f32::NEG_INFINITY),
-                _ => ((-b - root.sqrt()) / a, (-b + root.sqrt()) / a),
-            }
-        };
-        let ranges = match self.solid {
-            Solid::Cuboid(span) => {
-                let half = span / 2.0;
-                vec![
-                    slab(origin.x, ray.x, half.x),
-                    slab(origin.y, ray.y, half.y),
-                    slab(origin.z, ray.z, half.z),
-                ]
-            }
-            Solid::Cylinder { radius, yspan } => vec![
-                slab(origin.y, ray.y, yspan / 2.0),
-                disc(origin.xz(), ray.xz(), radius),
-            ],
-            Solid::Ball(radius) => {
-                let (b, c) = (origin.dot(ray), origin.length_squared() - radius * radius);
-                return c <= 0.0 || (b < 0.0 && b * b >= c * ray.length_squared());
-            }
-            Solid::Polyhedron(ref polyhedron) => {
-                return polyhedron.contains(origin) || polyhedron.entry(origin, ray).is_some();
-            }
-        };
-        let first = ranges.iter().map(|range| range.0).fold(0.0, f32::max);
-        let last = ranges
-            .iter()
-            .map(|range| range.1)
-            .fold(f32::INFINITY, f32::min);
-        first <= last
+        self.solid.contains(origin) || self.solid.entry(origin, ray).is_some()
     }
 }
 
