@@ -29,7 +29,9 @@ pub(crate) struct Clearance<'a> {
     /// Opening of the gripper, in units.
     pub opening: f32,
     /// The held solids, in the end effector's frame.
-    pub held: Vec<PlacedSolid>,
+    held: Vec<PlacedSolid>,
+    /// The same, where the posture that was last asked for carries them.
+    carried: RefCell<Vec<PlacedSolid>>,
     /// Rotation from the held object, when it does not lean, to the end effector's frame; `None` if it may lean.
     upright: Option<Quat>,
 }
@@ -94,6 +96,7 @@ impl<'a> Clearance<'a> {
             scratch: RefCell::default(),
             opening: sight.limbs[limb].opening as f32,
             held: Vec::new(),
+            carried: RefCell::default(),
             upright: None,
             table: sight.table,
             angles,
@@ -119,6 +122,7 @@ impl<'a> Clearance<'a> {
                 solid: solid.solid.clone(),
             })
             .collect();
+        self.carried = RefCell::new(self.held.clone());
         self
     }
 
@@ -157,14 +161,11 @@ impl<'a> Clearance<'a> {
     pub fn is_free(&self, angles: &Angles, margins: Margins) -> bool {
         let end_effector = self.end_effector(angles);
         let fingers = self.body.fingers(self.limb, end_effector, self.opening);
-        let held: Vec<_> = self
-            .held
-            .iter()
-            .map(|solid| PlacedSolid {
-                pose: end_effector * solid.pose,
-                solid: solid.solid.clone(),
-            })
-            .collect();
+        let mut held = self.carried.borrow_mut();
+        for (solid, in_hand) in held.iter_mut().zip(&self.held) {
+            solid.pose = end_effector * in_hand.pose;
+        }
+        let held = held.as_slice();
         let leans = |upright: Quat| lean(end_effector.rotation * upright) > LEAN;
         if self.upright.is_some_and(leans) {
             return false;
@@ -176,12 +177,12 @@ impl<'a> Clearance<'a> {
                 .iter()
                 .any(|solid| self.is_at_table(solid, margins.held_above_table))
             || self.meets(&fingers, margins.fingers)
-            || self.meets(&held, margins.held)
+            || self.meets(held, margins.held)
         {
             return false;
         }
         let meets_fingers = |one: &PlacedSolid| is_near(one, &self.others_fingers, 0.15);
-        if fingers.iter().chain(&held).any(meets_fingers) {
+        if fingers.iter().chain(held).any(meets_fingers) {
             return false;
         }
         let mut own = self.scratch.borrow_mut();
@@ -191,7 +192,7 @@ impl<'a> Clearance<'a> {
             !self.is_at_table(solid, LINKS)
                 && !is_near(solid, &self.obstacles, LINKS)
                 && !is_near(solid, &self.taken, LINKS)
-                && !is_near(solid, &held, LINKS)
+                && !is_near(solid, held, LINKS)
                 && !meets_fingers(solid)
         };
         own.iter()
