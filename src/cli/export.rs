@@ -12,8 +12,8 @@ use std::{
 use clap::{Args, ValueEnum};
 use tabletop::{
     export::{
-        ActionKind, ExportError, ExportSummary, Format, LeRobot, Matlab, Mcap, Robomimic,
-        Selection, StateKind, export,
+        ActionKind, DatasetFormat, EpisodeSelection, ExportError, ExportSummary, LeRobot, Matlab,
+        Mcap, Robomimic, StateKind, export,
     },
     recorder::RecordingReader,
 };
@@ -38,6 +38,9 @@ pub(super) struct ExportArgs {
     /// The action of a frame [default: hands; joints if the robot moves]
     #[arg(long, value_name = "KIND")]
     action: Option<ActionChoice>,
+    /// Leave out the columns with the parts of the task, which LeRobot reads from version 0.6 on
+    #[arg(long)]
+    no_language: bool,
     /// Number of recordings read at a time, from 1 to 256 [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
@@ -77,7 +80,14 @@ pub(super) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     let out = PathBuf::from(out);
     let start = Instant::now();
     let summary = match format.to_str() {
-        Some("lerobot") => args.export(&recordings, LeRobot::open(out).map_err(failed)?),
+        Some("lerobot") => {
+            let dataset = LeRobot::open(out).map_err(failed)?;
+            let dataset = match args.no_language {
+                true => dataset.without_language(),
+                false => dataset,
+            };
+            args.export(&recordings, dataset)
+        }
         Some("robomimic") => args.export(&recordings, Robomimic::open(out).map_err(failed)?),
         Some("mcap") => args.export(&recordings, Mcap::open(out).map_err(failed)?),
         Some("mat") => args.export(&recordings, Matlab::open(out).map_err(failed)?),
@@ -93,12 +103,12 @@ pub(super) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
 }
 
 impl ExportArgs {
-    fn export<F: Format>(
+    fn export<F: DatasetFormat>(
         &self,
         recordings: &[PathBuf],
         format: F,
     ) -> Result<ExportSummary, Failure> {
-        let selection = Selection {
+        let selection = EpisodeSelection {
             state: self.state.map(|state| match state {
                 StateChoice::Robot => StateKind::Robot,
                 StateChoice::Objects => StateKind::Objects,

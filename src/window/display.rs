@@ -278,6 +278,7 @@ fn can_draw(samples: u32, adapter: &RenderAdapter, device: &RenderDevice) -> boo
 #[cfg(test)]
 mod tests {
     use tabletop_core::CorePlugin;
+    use tabletop_user::UserPlugin;
 
     use super::*;
 
@@ -388,7 +389,7 @@ mod tests {
 
     fn app() -> (App, Entity) {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .init_resource::<ButtonInput<KeyCode>>()
             .init_resource::<FrameRate>();
         let window = app.world_mut().spawn((Window::default(), PrimaryWindow));

@@ -191,7 +191,7 @@ fn a_hand_over_is_one_step() {
         &recorded("hand_over"),
         &[
             "1. Hand the red block from the left hand to the right hand and put it on the blue block.",
-            "Does not matter: the red block went from hand to hand (0.55 to 2.93 s).",
+            "Does not matter: the red block went from hand to hand (0.55 to 2.92 s).",
         ],
     );
 }

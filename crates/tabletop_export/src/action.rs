@@ -5,7 +5,7 @@ use tabletop_core::SimTick;
 use tabletop_task::Demonstration;
 
 use crate::{
-    episode::Signal,
+    episode::FrameVectors,
     hand_track::{HANDS, HandTrack},
 };
 
@@ -15,12 +15,12 @@ pub(crate) fn hand_motions(
     shown: &Demonstration,
     hands: &[HandTrack; 2],
     ticks: &[SimTick],
-) -> Signal {
+) -> FrameVectors {
     let parts = ["dx", "dy", "dz", "drx", "dry", "drz", "grip"];
     let names = HANDS
         .iter()
         .flat_map(|(hand, _)| parts.map(|part| format!("{hand}_hand.{part}")));
-    let mut signal = Signal::new(names.collect());
+    let mut signal = FrameVectors::new(names.collect());
     for (frame, tick) in ticks.iter().enumerate() {
         let next = ticks.get(frame + 1).unwrap_or(tick);
         for hand in hands {

@@ -9,7 +9,7 @@ use crate::{image::Image, selection::ActionKind};
 
 /// A recording as a learner reads it.
 #[derive(Clone, Debug)]
-pub struct Episode {
+pub struct TrainingEpisode {
     /// The folder of the recording.
     pub folder: PathBuf,
     /// Frames a second.
@@ -17,9 +17,9 @@ pub struct Episode {
     /// The ticks whose ends the frames show.
     pub ticks: Vec<SimTick>,
     /// The state at each frame.
-    pub state: Signal,
+    pub state: FrameVectors,
     /// The action from each frame to the next.
-    pub action: Signal,
+    pub action: FrameVectors,
     /// The kind of action.
     pub action_kind: ActionKind,
     /// The objects with their poses.
@@ -36,7 +36,7 @@ pub struct Episode {
 
 /// Numbers for each frame.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Signal {
+pub struct FrameVectors {
     /// The names of a frame's numbers.
     pub names: Vec<String>,
     /// The numbers, frame by frame.
@@ -70,7 +70,7 @@ pub struct Subtask {
     pub sentence: String,
 }
 
-impl Episode {
+impl TrainingEpisode {
     /// Number of frames.
     pub fn len(&self) -> usize {
         self.ticks.len()
@@ -82,7 +82,7 @@ impl Episode {
     }
 }
 
-impl Signal {
+impl FrameVectors {
     /// A signal of these numbers a frame, without frames.
     pub fn new(names: Vec<String>) -> Self {
         Self {

@@ -2,10 +2,10 @@
 
 use std::{path::PathBuf, sync::mpsc, thread};
 
-use crate::{episode::Episode, error::ExportError, selection::Selection};
+use crate::{episode::TrainingEpisode, error::ExportError, selection::EpisodeSelection};
 
 /// A dataset that is being written.
-pub trait Format {
+pub trait DatasetFormat {
     /// An episode, prepared to be written.
     type Prepared: Send;
 
@@ -13,7 +13,7 @@ pub trait Format {
     ///
     /// # Errors
     /// The episode does not fit the format.
-    fn prepare(episode: Episode) -> Result<Self::Prepared, ExportError>;
+    fn prepare(episode: TrainingEpisode) -> Result<Self::Prepared, ExportError>;
 
     /// Writes an episode behind the ones before. Returns its number of frames.
     ///
@@ -42,9 +42,9 @@ pub struct ExportSummary {
 ///
 /// # Errors
 /// A recording cannot be read or does not fit, or the dataset cannot be written. Nothing of this export is then part of the dataset.
-pub fn export<F: Format>(
+pub fn export<F: DatasetFormat>(
     recordings: &[PathBuf],
-    selection: &Selection,
+    selection: &EpisodeSelection,
     mut format: F,
     jobs: usize,
     mut tell: impl FnMut(ExportSummary),
@@ -58,7 +58,8 @@ pub fn export<F: Format>(
                 let (sender, receiver) = mpsc::sync_channel(1);
                 scope.spawn(move || {
                     for folder in recordings.iter().skip(first).step_by(jobs) {
-                        let prepared = Episode::read(folder, selection).and_then(F::prepare);
+                        let prepared =
+                            TrainingEpisode::read(folder, selection).and_then(F::prepare);
                         if sender.send(prepared).is_err() {
                             // The writer has failed.
                             break;

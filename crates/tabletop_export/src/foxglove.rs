@@ -9,10 +9,10 @@ use tabletop_core::{SimTick, TICKS_PER_SECOND};
 use tabletop_geometry::{Pose, Primitive, Solid};
 
 use crate::{
-    episode::{Episode, ObjectTrack},
+    episode::{ObjectTrack, TrainingEpisode},
     episode_files::EpisodeFiles,
     error::ExportError,
-    format::Format,
+    format::DatasetFormat,
 };
 
 /// Metres per unit.
@@ -32,11 +32,11 @@ impl Mcap {
     }
 }
 
-impl Format for Mcap {
+impl DatasetFormat for Mcap {
     /// The bytes of a file, and the number of its frames.
     type Prepared = (Vec<u8>, usize);
 
-    fn prepare(episode: Episode) -> Result<Self::Prepared, ExportError> {
+    fn prepare(episode: TrainingEpisode) -> Result<Self::Prepared, ExportError> {
         let bytes = file_of(&episode).map_err(|error| ExportError::Unfit {
             recording: episode.folder.clone(),
             problem: error.to_string(),
@@ -97,7 +97,7 @@ fn stamp(tick: SimTick) -> Value {
     json!({ "sec": time / 1_000_000_000, "nsec": time % 1_000_000_000 })
 }
 
-fn file_of(episode: &Episode) -> Result<Vec<u8>, McapError> {
+fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, McapError> {
     // Pictures are compressed already.
     let options = WriteOptions::new().compression(None).library("tabletop");
     let mut file = File(options.create(Cursor::new(Vec::new()))?);

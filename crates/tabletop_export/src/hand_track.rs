@@ -15,14 +15,14 @@ pub(crate) const HANDS: [(&str, Vec3); 2] = [
 /// the next, since an invisible hand is nowhere else.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct HandTrack {
-    holds: Vec<Hold>,
+    holds: Vec<HoldSpan>,
     home: Vec3,
     start: SimTick,
 }
 
 /// A time in which a hand holds an object.
 #[derive(Clone, Debug, PartialEq)]
-struct Hold {
+struct HoldSpan {
     object: String,
     from: SimTick,
     to: SimTick,
@@ -77,7 +77,7 @@ impl HandTrack {
     }
 
     fn hold(&mut self, (_, object, from): (Hand, String, SimTick), to: SimTick) {
-        self.holds.push(Hold { object, from, to });
+        self.holds.push(HoldSpan { object, from, to });
     }
 
     /// The object that it holds at the end of a tick.
@@ -97,7 +97,7 @@ impl HandTrack {
         }
         let before = self.holds.iter().rev().find(|hold| hold.to <= tick);
         let next = self.holds.iter().find(|hold| hold.from > tick);
-        let place = |hold: &Hold, tick| of(&hold.object, tick).map(|pose| pose.location);
+        let place = |hold: &HoldSpan, tick| of(&hold.object, tick).map(|pose| pose.location);
         let (left, since) = match before {
             Some(hold) => (place(hold, hold.to).unwrap_or(self.home), hold.to),
             None => (self.home, self.start),

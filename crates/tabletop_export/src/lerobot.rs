@@ -16,7 +16,9 @@ mod data_file;
 mod episode_table;
 mod info;
 mod language;
+mod place;
 mod stats;
+mod table;
 mod task_table;
 
 use std::{
@@ -27,13 +29,10 @@ use std::{
 use tabletop_storage::{FolderLock, Storage};
 
 use self::{
-    commit::Commit,
-    data_file::{DataFile, DataPlace},
-    episode_table::EpisodeRow,
-    info::Info,
+    commit::Commit, data_file::DataFile, episode_table::EpisodeRow, info::Info, place::DataPlace,
     stats::FeatureStats,
 };
-use crate::{episode::Episode, error::ExportError, format::Format};
+use crate::{episode::TrainingEpisode, error::ExportError, format::DatasetFormat};
 
 /// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames: nothing is lost.
 #[derive(Debug)]
@@ -47,6 +46,7 @@ pub struct LeRobot {
     rows: Vec<EpisodeRow>,
     file: Option<DataFile>,
     next_file: usize,
+    has_language: bool,
     /// Nobody else writes to it meanwhile.
     _lock: Option<FolderLock>,
 }
@@ -54,7 +54,7 @@ pub struct LeRobot {
 /// An episode with its statistics.
 #[derive(Debug)]
 pub struct PreparedEpisode {
-    episode: Episode,
+    episode: TrainingEpisode,
     stats: BTreeMap<String, FeatureStats>,
 }
 
@@ -92,7 +92,8 @@ impl LeRobot {
             None => Default::default(),
         };
         Ok(Self {
-            next_file: data_file::count(&folder),
+            next_file: place::count(&folder),
+            has_language: info.as_ref().is_none_or(Info::has_language),
             folder,
             storage,
             commit,
@@ -105,6 +106,15 @@ impl LeRobot {
         })
     }
 
+    /// Leaves out the language columns, which LeRobot reads from version 0.6 on.
+    #[must_use]
+    pub fn without_language(self) -> Self {
+        Self {
+            has_language: false,
+            ..self
+        }
+    }
+
     /// The number of a task's sentence.
     fn task_number(&mut self, task: &str) -> usize {
         let known = self.tasks.iter().position(|known| known == task);
@@ -115,7 +125,7 @@ impl LeRobot {
     }
 
     /// The file that the next episode goes to.
-    fn file_for(&mut self, episode: &Episode) -> Result<&mut DataFile, ExportError> {
+    fn file_for(&mut self, episode: &TrainingEpisode) -> Result<&mut DataFile, ExportError> {
         if self.file.as_ref().is_some_and(DataFile::is_full) {
             self.close_file()?;
         }
@@ -127,7 +137,7 @@ impl LeRobot {
                 let (path, file) =
                     self.commit
                         .create(&place.path("data"), &self.folder, &self.storage)?;
-                DataFile::new(path, file, place, episode)?
+                DataFile::new(path, file, place, episode, self.has_language)?
             }
         };
         Ok(self.file.insert(file))
@@ -141,10 +151,10 @@ impl LeRobot {
     }
 }
 
-impl Format for LeRobot {
+impl DatasetFormat for LeRobot {
     type Prepared = PreparedEpisode;
 
-    fn prepare(episode: Episode) -> Result<PreparedEpisode, ExportError> {
+    fn prepare(episode: TrainingEpisode) -> Result<PreparedEpisode, ExportError> {
         let stats = stats::of_episode(&episode);
         Ok(PreparedEpisode { episode, stats })
     }
@@ -157,9 +167,9 @@ impl Format for LeRobot {
         };
         let mut info = match self.info.take() {
             Some(info) => info,
-            None => Info::of(&episode),
+            None => Info::of(&episode, self.has_language),
         };
-        info.check(&episode).map_err(unfit)?;
+        info.check(&episode, self.has_language).map_err(unfit)?;
         let task = self.task_number(&episode.task);
         let row = EpisodeRow {
             number: info.total_episodes,
@@ -173,7 +183,10 @@ impl Format for LeRobot {
         let file = self.file_for(&episode)?;
         file.write(&episode, &row)?;
         let place = file.place();
-        stats.extend(stats::of_counters(&episode, &row));
+        stats.extend(stats::of_counters(
+            &episode,
+            [row.number, row.first_frame, row.task_number],
+        ));
         for (feature, new) in &stats {
             match self.stats.get_mut(feature) {
                 Some(all) => all.merge(new),

@@ -1,15 +1,15 @@
 //! Recordings as datasets of other tools.
 //!
-//! An [`Episode`] is a recording as a learner reads it: frames at equal intervals, each with a state, an action and pictures, and the task in
-//! sentences. A [`Format`] writes episodes, and [`export`] makes them of recordings on all cores, in constant memory.
+//! An [`TrainingEpisode`] is a recording as a learner reads it: frames at equal intervals, each with a state, an action and pictures, and the task in
+//! sentences. A [`DatasetFormat`] writes episodes, and [`export`] makes them of recordings on all cores, in constant memory.
 //!
 //! ```no_run
 //! use std::path::PathBuf;
-//! use tabletop_export::{LeRobot, Selection, export};
+//! use tabletop_export::{LeRobot, EpisodeSelection, export};
 //!
 //! let dataset = LeRobot::open("dataset".into())?;
 //! let recordings = [PathBuf::from("demo")];
-//! let summary = export(&recordings, &Selection::default(), dataset, 2, |_| {})?;
+//! let summary = export(&recordings, &EpisodeSelection::default(), dataset, 2, |_| {})?;
 //! println!("{} frames", summary.frames);
 //! # Ok::<_, tabletop_export::ExportError>(())
 //! ```
@@ -29,12 +29,12 @@ mod robomimic;
 mod selection;
 mod sentence;
 
-pub use episode::{CameraTrack, Episode, ObjectTrack, Signal, Subtask};
+pub use episode::{CameraTrack, FrameVectors, ObjectTrack, Subtask, TrainingEpisode};
 pub use error::ExportError;
-pub use format::{ExportSummary, Format, export};
+pub use format::{DatasetFormat, ExportSummary, export};
 pub use foxglove::Mcap;
 pub use image::Image;
 pub use lerobot::LeRobot;
 pub use matlab::Matlab;
 pub use robomimic::Robomimic;
-pub use selection::{ActionKind, Selection, StateKind};
+pub use selection::{ActionKind, EpisodeSelection, StateKind};

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use hdf5_pure::mat::{MatBuilder, MatError, Options};
 
 use crate::{
-    episode::{CameraTrack, Episode, Signal},
+    episode::{CameraTrack, FrameVectors, TrainingEpisode},
     episode_files::EpisodeFiles,
     error::ExportError,
-    format::Format,
+    format::DatasetFormat,
 };
 
 /// A folder with a `.mat` file an episode: numbers and pictures as arrays, names and sentences as texts, a line each.
@@ -25,11 +25,11 @@ impl Matlab {
     }
 }
 
-impl Format for Matlab {
+impl DatasetFormat for Matlab {
     /// The bytes of a file, and the number of its frames.
     type Prepared = (Vec<u8>, usize);
 
-    fn prepare(episode: Episode) -> Result<Self::Prepared, ExportError> {
+    fn prepare(episode: TrainingEpisode) -> Result<Self::Prepared, ExportError> {
         let bytes = file_of(&episode).map_err(|error| ExportError::Unfit {
             recording: episode.folder.clone(),
             problem: error.to_string(),
@@ -47,7 +47,7 @@ impl Format for Matlab {
     }
 }
 
-fn file_of(episode: &Episode) -> Result<Vec<u8>, MatError> {
+fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, MatError> {
     let mut file = MatBuilder::new(Options::default());
     let frames = episode.len();
     file.write_scalar_f64("fps", f64::from(episode.fps))?;
@@ -83,7 +83,7 @@ fn file_of(episode: &Episode) -> Result<Vec<u8>, MatError> {
 }
 
 /// The numbers of a signal, each for all frames after the one before.
-fn by_columns(signal: &Signal) -> Vec<f32> {
+fn by_columns(signal: &FrameVectors) -> Vec<f32> {
     let width = signal.names.len();
     (0..width)
         .flat_map(|column| signal.frames().map(move |frame| frame[column]))

@@ -12,20 +12,20 @@ use tabletop_task::{Demonstration, Requirements, Task};
 
 use crate::{
     action::hand_motions,
-    episode::{CameraTrack, Episode, ObjectTrack, Signal, Subtask},
+    episode::{CameraTrack, FrameVectors, ObjectTrack, Subtask, TrainingEpisode},
     error::ExportError,
     hand_track::{HANDS, HandTrack},
     image::Image,
-    selection::{ActionKind, Selection, StateKind},
+    selection::{ActionKind, EpisodeSelection, StateKind},
     sentence,
 };
 
-impl Episode {
+impl TrainingEpisode {
     /// Reads a recording. Frames in which nothing has changed have the picture of the frame before.
     ///
     /// # Errors
     /// A file cannot be read, or the recording has no pictures.
-    pub fn read(folder: &Path, selection: &Selection) -> Result<Self, ExportError> {
+    pub fn read(folder: &Path, selection: &EpisodeSelection) -> Result<Self, ExportError> {
         let recording = RecordingReader::open(folder)?;
         let shown = Demonstration::of(&recording)?;
         let mut task = Task::of(&shown);
@@ -94,11 +94,11 @@ fn frame_ticks(recording: &RecordingReader) -> Vec<SimTick> {
 }
 
 /// The positions of all joints at each frame.
-fn joint_positions(rows: &[JointRow], ticks: &[SimTick]) -> Signal {
+fn joint_positions(rows: &[JointRow], ticks: &[SimTick]) -> FrameVectors {
     let first = rows.first().map(|row| row.tick);
     let names = rows.iter().take_while(|row| Some(row.tick) == first);
     let names: Vec<_> = names.map(|row| row.joint).collect();
-    let mut signal = Signal::new(names.iter().map(ToString::to_string).collect());
+    let mut signal = FrameVectors::new(names.iter().map(ToString::to_string).collect());
     let mut positions = vec![0.0_f32; names.len()];
     let mut rows = rows.iter().peekable();
     for tick in ticks {
@@ -113,26 +113,26 @@ fn joint_positions(rows: &[JointRow], ticks: &[SimTick]) -> Signal {
 }
 
 /// True if a number changes from frame to frame.
-fn is_moved(signal: &Signal) -> bool {
+fn is_moved(signal: &FrameVectors) -> bool {
     let mut frames = signal.frames();
     let first = frames.next();
     frames.any(|frame| Some(frame) != first)
 }
 
 /// The signal one frame later; the last frame stays.
-fn shifted(signal: &Signal) -> Signal {
+fn shifted(signal: &FrameVectors) -> FrameVectors {
     let frames: Vec<_> = signal.frames().collect();
     let later = frames.iter().skip(1).chain(frames.last());
-    Signal {
+    FrameVectors {
         names: signal.names.clone(),
         values: later.flat_map(|frame| frame.iter().copied()).collect(),
     }
 }
 
 /// Two signals, frame by frame one after the other.
-fn beside(one: &Signal, other: &Signal) -> Signal {
+fn beside(one: &FrameVectors, other: &FrameVectors) -> FrameVectors {
     let names = one.names.iter().chain(&other.names).cloned().collect();
-    let mut both = Signal::new(names);
+    let mut both = FrameVectors::new(names);
     for (one, other) in one.frames().zip(other.frames()) {
         both.values.extend(one);
         both.values.extend(other);
@@ -147,7 +147,7 @@ fn object_state(
     objects: &[ObjectTrack],
     hands: &[HandTrack; 2],
     ticks: &[SimTick],
-) -> Signal {
+) -> FrameVectors {
     let parts = ["x", "y", "z", "qx", "qy", "qz", "qw"];
     let of_objects = objects
         .iter()
@@ -155,7 +155,7 @@ fn object_state(
     let of_hands = HANDS
         .iter()
         .flat_map(|(hand, _)| ["x", "y", "z", "grip"].map(|part| format!("{hand}_hand.{part}")));
-    let mut signal = Signal::new(of_objects.chain(of_hands).collect());
+    let mut signal = FrameVectors::new(of_objects.chain(of_hands).collect());
     for (frame, &tick) in ticks.iter().enumerate() {
         for object in objects {
             match object.poses[frame] {

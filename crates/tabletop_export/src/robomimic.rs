@@ -10,7 +10,9 @@ use hdf5_pure::{AttrValue, Error, File, FileBuilder};
 use serde_json::json;
 use tabletop_storage::Storage;
 
-use crate::{episode::Episode, error::ExportError, format::Format, selection::ActionKind};
+use crate::{
+    episode::TrainingEpisode, error::ExportError, format::DatasetFormat, selection::ActionKind,
+};
 
 /// Every so many demonstrations, one is for validation.
 const VALIDATION: usize = 10;
@@ -65,7 +67,7 @@ impl Robomimic {
         })
     }
 
-    fn add(&self, episode: &Episode, name: &str, env_args: &str) -> Result<(), Error> {
+    fn add(&self, episode: &TrainingEpisode, name: &str, env_args: &str) -> Result<(), Error> {
         let frames = episode.len() as u64;
         let root = self.file.root();
         let meta = json!({ "lang": episode.task }).to_string();
@@ -164,10 +166,10 @@ impl Robomimic {
     }
 }
 
-impl Format for Robomimic {
-    type Prepared = Episode;
+impl DatasetFormat for Robomimic {
+    type Prepared = TrainingEpisode;
 
-    fn prepare(episode: Episode) -> Result<Episode, ExportError> {
+    fn prepare(episode: TrainingEpisode) -> Result<TrainingEpisode, ExportError> {
         let scale = scale(episode.action_kind, episode.fps);
         let values = episode.action.values.iter().enumerate();
         let mut beyond =
@@ -185,7 +187,7 @@ impl Format for Robomimic {
         }
     }
 
-    fn write(&mut self, episode: Episode) -> Result<usize, ExportError> {
+    fn write(&mut self, episode: TrainingEpisode) -> Result<usize, ExportError> {
         let env_args = env_args(&episode);
         match &self.shape {
             Some(shape) if shape.env_args != env_args => {
@@ -242,7 +244,7 @@ fn scale(kind: ActionKind, fps: u32) -> Vec<f64> {
 }
 
 /// The description of the environment, and of the meaning of states and actions.
-fn env_args(episode: &Episode) -> String {
+fn env_args(episode: &TrainingEpisode) -> String {
     json!({
         "env_name": "tabletop",
         "type": 2,

@@ -2,7 +2,7 @@
 
 /// The choice of what an episode holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Selection {
+pub struct EpisodeSelection {
     /// The state; `None` for that of what acts.
     pub state: Option<StateKind>,
     /// The action; `None` for that of what acts: the robot if one of its joints moves, otherwise the hands.

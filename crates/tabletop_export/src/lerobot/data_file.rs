@@ -3,20 +3,9 @@
 use std::{
     io::{self, Write},
     path::{Path, PathBuf},
-    sync::Arc,
 };
 
-use arrow::{
-    array::RecordBatch,
-    datatypes::{Field, Schema},
-    error::ArrowError,
-};
-use parquet::{
-    arrow::ArrowWriter,
-    basic::Compression,
-    errors::ParquetError,
-    file::properties::{WriterProperties, WriterPropertiesBuilder},
-};
+use parquet::{arrow::ArrowWriter, errors::ParquetError};
 use tabletop_storage::StoredFile;
 
 use super::{
@@ -24,43 +13,10 @@ use super::{
     episode_table::EpisodeRow,
     info::feature_of_camera,
     language,
+    place::{DataPlace, MOST_FILE_BYTES},
+    table::{batch, properties, schema_of},
 };
-use crate::{episode::Episode, error::ExportError};
-
-/// Size from which on a file gets no more episodes, in bytes.
-pub(super) const MOST_FILE_BYTES: usize = 100_000_000;
-
-/// Number of files in a folder.
-pub(super) const FILES_PER_CHUNK: usize = 1000;
-
-/// The place of a file among those of its kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct DataPlace {
-    pub chunk: usize,
-    pub file: usize,
-}
-
-impl DataPlace {
-    /// That of the file with this number.
-    pub const fn of(number: usize) -> Self {
-        Self {
-            chunk: number / FILES_PER_CHUNK,
-            file: number % FILES_PER_CHUNK,
-        }
-    }
-
-    /// Its path in the dataset.
-    pub fn path(self, kind: &str) -> PathBuf {
-        let Self { chunk, file } = self;
-        format!("{kind}/chunk-{chunk:03}/file-{file:03}.parquet").into()
-    }
-}
-
-/// Number of files that a dataset has.
-pub(super) fn count(folder: &Path) -> usize {
-    let is_there = |number: &usize| folder.join(DataPlace::of(*number).path("data")).exists();
-    (0..).take_while(is_there).count()
-}
+use crate::{episode::TrainingEpisode, error::ExportError};
 
 /// A file that gets episodes.
 #[derive(Debug)]
@@ -68,6 +24,7 @@ pub(super) struct DataFile {
     path: PathBuf,
     place: DataPlace,
     writer: ArrowWriter<CountingFile>,
+    has_language: bool,
 }
 
 /// A file that is written by others' code.
@@ -90,9 +47,10 @@ impl DataFile {
         path: PathBuf,
         file: StoredFile,
         place: DataPlace,
-        episode: &Episode,
+        episode: &TrainingEpisode,
+        has_language: bool,
     ) -> Result<Self, ExportError> {
-        let columns = columns_of(episode, &EpisodeRow::default());
+        let columns = columns_of(episode, &EpisodeRow::default(), has_language);
         let schema = schema_of(&columns);
         let properties = properties()
             // Never by itself: readers rely on one group an episode.
@@ -104,6 +62,7 @@ impl DataFile {
             path,
             place,
             writer,
+            has_language,
         })
     }
 
@@ -117,8 +76,12 @@ impl DataFile {
     }
 
     /// Writes an episode.
-    pub fn write(&mut self, episode: &Episode, row: &EpisodeRow) -> Result<(), ExportError> {
-        let batch = batch(columns_of(episode, row))
+    pub fn write(
+        &mut self,
+        episode: &TrainingEpisode,
+        row: &EpisodeRow,
+    ) -> Result<(), ExportError> {
+        let batch = batch(columns_of(episode, row, self.has_language))
             .map_err(|error| ExportError::dataset(&self.path, error))?;
         let written = self.writer.write(&batch).and_then(|()| self.writer.flush());
         written.map_err(|error| failed(&self.path, error))
@@ -132,25 +95,6 @@ impl DataFile {
     }
 }
 
-/// The usual properties of files.
-pub(super) fn properties() -> WriterPropertiesBuilder {
-    WriterProperties::builder().set_compression(Compression::SNAPPY)
-}
-
-/// A table of these columns.
-pub(super) fn batch(columns: Vec<Column>) -> Result<RecordBatch, ArrowError> {
-    let schema = schema_of(&columns);
-    RecordBatch::try_new(
-        schema,
-        columns.into_iter().map(|(_, array)| array).collect(),
-    )
-}
-
-fn schema_of(columns: &[Column]) -> Arc<Schema> {
-    let fields: Vec<Field> = columns.iter().map(|(field, _)| field.clone()).collect();
-    Arc::new(Schema::new(fields))
-}
-
 fn failed(path: &Path, error: ParquetError) -> ExportError {
     match error {
         ParquetError::External(error) => match error.downcast::<io::Error>() {
@@ -162,7 +106,7 @@ fn failed(path: &Path, error: ParquetError) -> ExportError {
 }
 
 /// The columns of an episode's frames.
-fn columns_of(episode: &Episode, row: &EpisodeRow) -> Vec<Column> {
+fn columns_of(episode: &TrainingEpisode, row: &EpisodeRow, has_language: bool) -> Vec<Column> {
     let frames = episode.len();
     let mut columns = vec![
         columns::vectors(
@@ -179,8 +123,10 @@ fn columns_of(episode: &Episode, row: &EpisodeRow) -> Vec<Column> {
             (0..frames).map(|frame| format!("frame-{frame:06}.png")),
         ));
     }
-    columns.push(language::persistent(episode));
-    columns.push(language::events(episode));
+    if has_language {
+        columns.push(language::persistent(episode));
+        columns.push(language::events(episode));
+    }
     let seconds = (0..frames).map(|frame| frame as f32 / episode.fps as f32);
     columns.push(columns::float32("timestamp", seconds));
     columns.push(columns::int64("frame_index", 0..frames));

@@ -1,14 +1,15 @@
 //! `meta/episodes/chunk-XXX/file-XXX.parquet`: a row an episode.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
-use arrow::error::ArrowError;
+use arrow::{array::Int64Array, error::ArrowError};
 use parquet::arrow::ArrowWriter;
 
 use super::{
     columns::{self, Column},
-    data_file::{DataPlace, batch, properties},
+    place::DataPlace,
     stats::{FeatureStats, QUANTILES},
+    table::{batch, properties},
 };
 use crate::error::ExportError;
 
@@ -87,12 +88,11 @@ fn columns_of(feature: &str, rows: &[EpisodeRow]) -> Vec<Column> {
         column("mean", &|stats| stats.mean.clone()),
         column("std", &|stats| stats.std.clone()),
     ];
-    let counts: Vec<_> = stats.iter().map(|stats| [stats.count as f64]).collect();
-    let counts: Vec<_> = counts.iter().map(<[f64; 1]>::as_slice).collect();
-    all.push(columns::tensors(
+    let counts = stats.iter().map(|stats| stats.count as i64);
+    all.push(columns::lists(
         &format!("stats/{feature}/count"),
-        &counts,
-        0,
+        Arc::new(Int64Array::from_iter_values(counts)),
+        stats.iter().map(|_| 1),
     ));
     for (place, (name, _)) in QUANTILES.iter().enumerate() {
         all.push(column(name, &|stats| stats.quantiles[place].clone()));

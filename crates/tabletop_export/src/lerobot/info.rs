@@ -5,11 +5,13 @@ use std::{io::ErrorKind, path::Path};
 use serde_json::{Map, Value, json};
 use tabletop_storage::{Symlinks, read_regular_file};
 
-use super::data_file::MOST_FILE_BYTES;
-use crate::{episode::Episode, error::ExportError};
+use super::place::{FILES_PER_CHUNK, MOST_FILE_BYTES};
+use crate::{episode::TrainingEpisode, error::ExportError};
 
 const PATH: &str = "meta/info.json";
 const MOST_BYTES: u64 = 64 * 1024 * 1024;
+
+const LANGUAGE: [&str; 2] = ["language_persistent", "language_events"];
 
 /// The features of a dataset and its totals.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,12 +27,12 @@ pub(super) struct Info {
 
 impl Info {
     /// The features of an episode.
-    pub fn of(episode: &Episode) -> Self {
+    pub fn of(episode: &TrainingEpisode, has_language: bool) -> Self {
         let mut rest = Map::new();
         rest.insert("codebase_version".into(), json!("v3.0"));
         Self {
             rest,
-            features: features_of(episode),
+            features: features_of(episode, has_language),
             fps: u64::from(episode.fps),
             total_episodes: 0,
             total_frames: 0,
@@ -69,8 +71,13 @@ impl Info {
         }))
     }
 
+    /// True if the dataset has language columns.
+    pub fn has_language(&self) -> bool {
+        self.features.contains_key(LANGUAGE[0])
+    }
+
     /// The reason why an episode does not fit, if it does not.
-    pub fn check(&self, episode: &Episode) -> Result<(), String> {
+    pub fn check(&self, episode: &TrainingEpisode, has_language: bool) -> Result<(), String> {
         if episode.is_empty() {
             return Err("it has no frame".into());
         }
@@ -80,7 +87,7 @@ impl Info {
                 episode.fps, self.fps
             ));
         }
-        let features = features_of(episode);
+        let features = features_of(episode, has_language);
         for (name, feature) in &features {
             match self.features.get(name) {
                 Some(known) if known == feature => {}
@@ -113,7 +120,7 @@ impl Info {
             "total_episodes": self.total_episodes,
             "total_frames": self.total_frames,
             "total_tasks": self.total_tasks,
-            "chunks_size": super::data_file::FILES_PER_CHUNK,
+            "chunks_size": FILES_PER_CHUNK,
             "data_files_size_in_mb": MOST_FILE_BYTES / 1_000_000,
             "video_files_size_in_mb": 200,
             "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
@@ -137,7 +144,7 @@ impl Info {
 }
 
 /// The features of an episode, in the order of their columns.
-fn features_of(episode: &Episode) -> Map<String, Value> {
+fn features_of(episode: &TrainingEpisode, has_language: bool) -> Map<String, Value> {
     let mut features = Map::new();
     for (name, signal) in [
         ("observation.state", &episode.state),
@@ -162,7 +169,7 @@ fn features_of(episode: &Episode) -> Map<String, Value> {
             }),
         );
     }
-    for name in ["language_persistent", "language_events"] {
+    for name in LANGUAGE.into_iter().filter(|_| has_language) {
         let language = json!({ "dtype": "language", "shape": [1], "names": null });
         features.insert(name.into(), language);
     }

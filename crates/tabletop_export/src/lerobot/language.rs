@@ -9,10 +9,10 @@ use arrow::{
 };
 
 use super::columns::Column;
-use crate::episode::Episode;
+use crate::episode::TrainingEpisode;
 
 /// `language_persistent`: every frame has all rows of the episode, each with the time from which it holds.
-pub(super) fn persistent(episode: &Episode) -> Column {
+pub(super) fn persistent(episode: &TrainingEpisode) -> Column {
     let seconds = |frame: usize| frame as f32 / episode.fps as f32;
     let paraphrases = episode.paraphrases.iter();
     let paraphrases = paraphrases.map(|text| ("user", text.as_str(), "task_aug", 0.0));
@@ -46,7 +46,7 @@ pub(super) fn persistent(episode: &Episode) -> Column {
 }
 
 /// `language_events`: none.
-pub(super) fn events(episode: &Episode) -> Column {
+pub(super) fn events(episode: &TrainingEpisode) -> Column {
     let fields = fields(None);
     rows_of_frames(
         "language_events",

@@ -5,9 +5,9 @@ use std::{collections::BTreeMap, path::Path, sync::Arc};
 use serde_json::{Map, Value, json};
 use tabletop_storage::{Symlinks, read_regular_file};
 
-use super::{episode_table::EpisodeRow, info::feature_of_camera};
+use super::info::feature_of_camera;
 use crate::{
-    episode::{CameraTrack, Episode, Signal},
+    episode::{CameraTrack, FrameVectors, TrainingEpisode},
     error::ExportError,
     image::Image,
 };
@@ -154,7 +154,7 @@ fn quantile(sorted: &[f64], part: f64) -> f64 {
 }
 
 /// The statistics of an episode's states, actions and pictures.
-pub(super) fn of_episode(episode: &Episode) -> BTreeMap<String, FeatureStats> {
+pub(super) fn of_episode(episode: &TrainingEpisode) -> BTreeMap<String, FeatureStats> {
     let mut all = BTreeMap::from([
         ("observation.state".to_owned(), of_signal(&episode.state)),
         ("action".to_owned(), of_signal(&episode.action)),
@@ -165,10 +165,10 @@ pub(super) fn of_episode(episode: &Episode) -> BTreeMap<String, FeatureStats> {
     all
 }
 
-/// The statistics of the numbers that count frames, episodes and tasks.
+/// The statistics of the numbers that count frames, episodes and tasks: those of the episode, its first frame in the dataset, and its task.
 pub(super) fn of_counters(
-    episode: &Episode,
-    row: &EpisodeRow,
+    episode: &TrainingEpisode,
+    [number, first_frame, task_number]: [usize; 3],
 ) -> impl Iterator<Item = (String, FeatureStats)> {
     let frames = episode.len();
     let counter = |of: &dyn Fn(usize) -> f64| FeatureStats::of(vec![(0..frames).map(of).collect()]);
@@ -178,15 +178,15 @@ pub(super) fn of_counters(
             counter(&|frame| f64::from(frame as f32 / episode.fps as f32)),
         ),
         ("frame_index", counter(&|frame| frame as f64)),
-        ("episode_index", counter(&|_| row.number as f64)),
-        ("index", counter(&|frame| (row.first_frame + frame) as f64)),
-        ("task_index", counter(&|_| row.task_number as f64)),
+        ("episode_index", counter(&|_| number as f64)),
+        ("index", counter(&|frame| (first_frame + frame) as f64)),
+        ("task_index", counter(&|_| task_number as f64)),
     ]
     .map(|(name, stats)| (name.to_owned(), stats))
     .into_iter()
 }
 
-fn of_signal(signal: &Signal) -> FeatureStats {
+fn of_signal(signal: &FrameVectors) -> FeatureStats {
     let mut components = vec![Vec::new(); signal.names.len()];
     for frame in signal.frames() {
         for (samples, value) in components.iter_mut().zip(frame) {

@@ -1,6 +1,6 @@
 //! `meta/tasks.parquet`: the sentences of the tasks, which are the index of a pandas table.
 
-use std::{fs::File, path::Path};
+use std::{collections::HashMap, fs::File, path::Path, sync::Arc};
 
 use arrow::{array::AsArray as _, datatypes::Int64Type};
 use parquet::{
@@ -12,7 +12,7 @@ use tabletop_storage::{Symlinks, open_regular_file};
 
 use super::{
     columns,
-    data_file::{batch, properties},
+    table::{batch, properties},
 };
 use crate::error::ExportError;
 
@@ -41,7 +41,10 @@ pub(super) fn write(tasks: &[String]) -> Result<Vec<u8>, ExportError> {
             columns::int64("task_index", 0..tasks.len()),
             columns::strings("task", tasks.iter().map(String::as_str)),
         ])?;
-        // Both as metadata of the file and of the Arrow schema within it.
+        // In the Arrow schema, where pyarrow looks, and in the file itself.
+        let schema = batch.schema().as_ref().clone();
+        let described = HashMap::from([("pandas".to_owned(), pandas.to_string())]);
+        let batch = batch.with_schema(Arc::new(schema.with_metadata(described)))?;
         let entry = KeyValue::new("pandas".to_owned(), pandas.to_string());
         let properties = properties()
             .set_key_value_metadata(Some(vec![entry]))

@@ -8,7 +8,7 @@ use std::{
 
 use bevy::prelude::*;
 use tabletop_core::prelude::*;
-use tabletop_export::{Episode, Selection};
+use tabletop_export::{EpisodeSelection, TrainingEpisode};
 use tabletop_recorder::RecorderPlugin;
 use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
@@ -71,8 +71,8 @@ pub fn recording() -> &'static Path {
 }
 
 /// The recording as an episode.
-pub fn episode() -> Episode {
-    Episode::read(recording(), &Selection::default()).unwrap()
+pub fn episode() -> TrainingEpisode {
+    TrainingEpisode::read(recording(), &EpisodeSelection::default()).unwrap()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! HDF5 files: robomimic's and MATLAB's.
 
 use hdf5_pure::{AttrValue, File};
-use tabletop_export::{Format as _, Matlab, Robomimic};
+use tabletop_export::{DatasetFormat as _, Matlab, Robomimic};
 
 use crate::demonstration::{episode, fresh};
 

@@ -8,7 +8,7 @@ use arrow::{
 };
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use serde_json::Value;
-use tabletop_export::{ExportError, Format as _, LeRobot, Selection, export};
+use tabletop_export::{DatasetFormat as _, EpisodeSelection, ExportError, LeRobot, export};
 use tabletop_storage::{Storage, StorageFault};
 
 use crate::demonstration::{episode, fresh, recording};
@@ -85,7 +85,14 @@ fn frames_have_the_pixels_and_numbers_of_the_recording() {
     let folder = fresh("lerobot");
     let dataset = LeRobot::open(folder.clone()).unwrap();
     let recordings = [recording().to_owned(), recording().to_owned()];
-    let summary = export(&recordings, &Selection::default(), dataset, 2, |_| {}).unwrap();
+    let summary = export(
+        &recordings,
+        &EpisodeSelection::default(),
+        dataset,
+        2,
+        |_| {},
+    )
+    .unwrap();
     let episode = episode();
     assert_eq!((summary.episodes, summary.frames), (2, 2 * episode.len()));
     assert_eq!(whole_episodes(&folder), 2);
@@ -137,6 +144,26 @@ fn language_is_on_every_frame_with_the_times_from_which_it_holds() {
 }
 
 #[test]
+fn a_dataset_for_earlier_versions_has_no_language() {
+    let folder = fresh("lerobot_no_language");
+    let dataset = LeRobot::open(folder.clone()).unwrap().without_language();
+    export(
+        &[recording().to_owned()],
+        &EpisodeSelection::default(),
+        dataset,
+        1,
+        |_| {},
+    )
+    .unwrap();
+    add(&folder, Storage::default(), 1).unwrap();
+    assert_eq!(whole_episodes(&folder), 2);
+    let (batches, _) = read(&folder.join("data/chunk-000/file-001.parquet"));
+    assert!(batches[0].column_by_name("language_persistent").is_none());
+    let info = json(&folder.join("meta/info.json"));
+    assert!(info["features"].get("language_persistent").is_none());
+}
+
+#[test]
 fn tasks_are_the_index_of_a_pandas_table() {
     let folder = fresh("lerobot_tasks");
     add(&folder, Storage::default(), 2).unwrap();
@@ -146,6 +173,8 @@ fn tasks_are_the_index_of_a_pandas_table() {
     let pandas = metadata.unwrap().iter().find(|entry| entry.key == "pandas");
     let pandas: Value = serde_json::from_str(pandas.unwrap().value.as_ref().unwrap()).unwrap();
     assert_eq!(pandas["index_columns"][0], "task");
+    let of_arrow = reader.schema().metadata().get("pandas").unwrap();
+    assert_eq!(serde_json::from_str::<Value>(of_arrow).unwrap(), pandas);
     let batch = reader.build().unwrap().next().unwrap().unwrap();
     assert_eq!(batch.num_rows(), 1, "both episodes have one task");
     let tasks = batch.column_by_name("task").unwrap().as_string::<i32>();

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fs};
 
 use mcap::MessageStream;
 use serde_json::Value;
-use tabletop_export::{Format as _, Mcap};
+use tabletop_export::{DatasetFormat as _, Mcap};
 
 use crate::demonstration::{episode, fresh};
 
