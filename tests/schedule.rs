@@ -55,6 +55,7 @@ fn stray_systems(app: &mut App) -> Vec<String> {
             TickSystems.intern(),
             OrderSystems::Scenario.intern(),
             OrderSystems::User.intern(),
+            OrderSystems::Controller.intern(),
             OrderSystems::Script.intern(),
         ];
         // A set without systems is unknown.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// ```
 /// use bevy::math::Vec3;
-/// use crate::LIGHT;
+/// use tabletop_core::LIGHT;
 ///
 /// assert_eq!(LIGHT.share(Vec3::Z), 1.0);
 /// assert_eq!(LIGHT.share(Vec3::NEG_Y), 0.8);

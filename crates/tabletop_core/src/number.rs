@@ -6,7 +6,7 @@ use std::fmt;
 /// always with a decimal point, and with an exponent below 0.001 and from ten million.
 ///
 /// ```
-/// use crate::Decimal;
+/// use tabletop_core::Decimal;
 ///
 /// assert_eq!(Decimal(1.0).to_string(), "1.0");
 /// assert_eq!(Decimal(-0.0).to_string(), "-0.0");

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Objects in random colours at a random free place over the table.
 ///
 /// ```
-/// use crate::Preset;
+/// use tabletop_core::Preset;
 ///
 /// assert_eq!(Preset::Stack(5).to_string(), "a stack of 5 blocks");
 /// assert!(Preset::Stack(0).fault().is_some());

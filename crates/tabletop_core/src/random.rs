@@ -3,7 +3,7 @@
 /// SplitMix64: a counter, scrambled (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
 ///
 /// ```
-/// use crate::Random;
+/// use tabletop_core::Random;
 ///
 /// let draw = |seed| Random::new(seed).between((0.0, 1.0));
 /// assert_eq!(draw(7), draw(7));

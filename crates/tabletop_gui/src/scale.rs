@@ -146,6 +146,7 @@ mod tests {
     use std::{env, fs, path::PathBuf};
 
     use tabletop_core::CorePlugin;
+    use tabletop_user::UserPlugin;
 
     use super::*;
 
@@ -190,7 +191,7 @@ mod tests {
     fn keys_change_the_scale() {
         use KeyCode::{ControlLeft, Digit0, Equal, Minus, NumpadAdd, ShiftLeft};
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
             .init_resource::<UiScale>()
             .add_systems(Update, change_by_keys);
         app.world_mut().spawn((Window::default(), PrimaryWindow));

@@ -5,7 +5,7 @@ use tabletop_core::{
     CorePlugin, Hands, IssuedCommand, ObjectIndex, ObjectSpec, Shape, SimCommand, Table,
 };
 use tabletop_geometry::{Pose, Rgb};
-use tabletop_user::UserCamera;
+use tabletop_user::{UserCamera, UserPlugin};
 
 use crate::input::pointer::Pointer;
 
@@ -24,7 +24,7 @@ pub(crate) struct TestWorld {
 impl TestWorld {
     pub fn new(plugin: impl Plugin) -> Self {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<ButtonInput<KeyCode>>()
             .init_resource::<ButtonInput<MouseButton>>();

@@ -211,6 +211,8 @@ fn steering(keys: &Keys) -> Steering {
 
 #[cfg(test)]
 mod tests {
+    use tabletop_user::UserPlugin;
+
     use super::*;
     use bevy::{ecs::system::RunSystemOnce as _, time::TimeUpdateStrategy};
     use std::time::Duration;
@@ -219,7 +221,7 @@ mod tests {
     fn app(milliseconds_a_frame: u64) -> App {
         let mut app = App::new();
         let frame = Duration::from_millis(milliseconds_a_frame);
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
             .insert_resource(TimeUpdateStrategy::ManualDuration(frame))
             .init_resource::<ButtonInput<KeyCode>>()
             .add_plugins(plugin);

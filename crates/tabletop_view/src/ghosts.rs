@@ -98,13 +98,14 @@ fn bow(from: Vec3, to: Vec3) -> impl Iterator<Item = Vec3> {
 mod tests {
     use tabletop_core::{CorePlugin, Shape};
     use tabletop_geometry::{Pose, Rgb};
+    use tabletop_user::UserPlugin;
 
     use super::*;
 
     #[test]
     fn a_ghost_is_where_its_object_is_going_to_be() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
             .init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<Surface>>()
             .add_plugins((crate::visual::plugin, solids));

@@ -77,7 +77,7 @@ mod tests {
         let mut app = App::new();
         // Frames are shorter than ticks, so that moments between two ticks are drawn, too.
         let frame = Duration::from_millis(7);
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
             .insert_resource(TimeUpdateStrategy::ManualDuration(frame))
             .init_resource::<ButtonInput<KeyCode>>()
             .init_resource::<Assets<Mesh>>()

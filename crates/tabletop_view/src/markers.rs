@@ -59,13 +59,14 @@ impl FromWorld for MarkerLooks {
 #[cfg(test)]
 mod tests {
     use tabletop_core::CorePlugin;
+    use tabletop_user::UserPlugin;
 
     use super::*;
 
     #[test]
     fn there_is_a_ball_around_each_point() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
             .init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<Surface>>()
             .add_plugins(plugin);

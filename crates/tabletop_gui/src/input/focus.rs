@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use KeyCode::{ArrowRight, Digit1, Digit2, Enter, Escape, F1, KeyR, Space, Tab};
     use tabletop_core::CorePlugin;
-    use tabletop_user::{Action, KeySystems, Keymap};
+    use tabletop_user::{Action, KeySystems, Keymap, UserPlugin};
 
     /// A form with things that can have the focus, and the results.
     #[derive(Resource, Default)]
@@ -155,7 +155,7 @@ mod tests {
     impl Keyboard {
         fn new() -> Self {
             let mut app = App::new();
-            app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+            app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
                 .init_resource::<ButtonInput<KeyCode>>()
                 .init_resource::<Form>()
                 .init_resource::<Struck>()

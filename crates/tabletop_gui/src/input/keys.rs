@@ -34,13 +34,15 @@ fn quit(
 
 #[cfg(test)]
 mod tests {
+    use tabletop_user::UserPlugin;
+
     use super::*;
     use bevy::time::TimeUpdateStrategy;
     use tabletop_core::CorePlugin;
 
     fn app() -> App {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<ButtonInput<KeyCode>>();
         app.finish();

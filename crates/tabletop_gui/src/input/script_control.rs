@@ -52,16 +52,23 @@ fn note_events(mut events: MessageReader<ScriptEvent>, mut notices: ResMut<Notic
 mod tests {
     use bevy::time::TimeUpdateStrategy;
     use tabletop_core::CorePlugin;
+    use tabletop_user::UserPlugin;
 
     use super::*;
     use crate::input::keys;
 
     fn app() -> App {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), keys::plugin, plugin))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .init_resource::<ButtonInput<KeyCode>>()
-            .init_resource::<Notices>();
+        app.add_plugins((
+            MinimalPlugins,
+            CorePlugin::default(),
+            UserPlugin,
+            keys::plugin,
+            plugin,
+        ))
+        .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+        .init_resource::<ButtonInput<KeyCode>>()
+        .init_resource::<Notices>();
         app
     }
 

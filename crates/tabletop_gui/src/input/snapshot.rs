@@ -148,6 +148,7 @@ fn name(time: Timestamp) -> String {
 #[cfg(test)]
 mod tests {
     use std::fs::{self, File};
+    use tabletop_user::UserPlugin;
 
     use super::*;
     use bevy::time::TimeUpdateStrategy;
@@ -223,7 +224,7 @@ mod tests {
     fn the_picture_of_the_next_tick_is_saved_once_and_reported() {
         let folder = folder("next_tick");
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(2))
             .init_resource::<Notices>()
             .add_systems(

@@ -62,6 +62,8 @@ fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<TurnSums>) {
 
 #[cfg(test)]
 mod tests {
+    use tabletop_user::UserPlugin;
+
     use super::*;
     use bevy::time::TimeUpdateStrategy;
     use tabletop_core::{CommandId, CorePlugin};
@@ -98,7 +100,7 @@ mod tests {
     #[test]
     fn a_grasp_begins_at_zero_for_its_hand_and_an_undo_for_all() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
         let mut turns = app.world_mut().resource_mut::<TurnSums>();
         turns.turn_to(Hand::Left, 0, 10);

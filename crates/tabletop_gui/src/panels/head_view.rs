@@ -167,6 +167,8 @@ fn inset(room: Rect, aspect: f32) -> Rect {
 
 #[cfg(test)]
 mod tests {
+    use tabletop_user::UserPlugin;
+
     use super::*;
     use bevy::time::TimeUpdateStrategy;
     use egui::pos2;
@@ -233,7 +235,7 @@ mod tests {
     #[test]
     fn the_picture_of_the_last_tick_of_a_frame_is_asked_for_while_it_is_shown() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(3))
             .init_resource::<Taken>()
             .add_systems(

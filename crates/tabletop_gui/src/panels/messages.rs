@@ -216,13 +216,14 @@ mod tests {
     use bevy::time::TimeUpdateStrategy;
     use egui_kittest::{Harness, kittest::Queryable as _};
     use tabletop_core::{CommandId, CorePlugin};
+    use tabletop_user::UserPlugin;
 
     use super::*;
 
     #[test]
     fn facts_become_notices_each_once() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<Notices>()
             .add_systems(Update, note_facts);

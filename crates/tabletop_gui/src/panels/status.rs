@@ -302,6 +302,7 @@ mod tests {
     use bevy::{ecs::system::RunSystemOnce as _, time::TimeUpdateStrategy};
     use egui_kittest::{Harness, kittest::Queryable as _};
     use tabletop_core::CorePlugin;
+    use tabletop_user::UserPlugin;
 
     use super::*;
 
@@ -443,7 +444,7 @@ mod tests {
     #[test]
     fn a_recording_is_followed_frame_by_frame() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
             .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
             .init_resource::<Speed>()
             .init_resource::<Clock>()

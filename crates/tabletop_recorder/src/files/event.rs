@@ -9,7 +9,8 @@ use crate::files::properties::properties;
 ///
 /// ```
 /// use bevy::math::Vec3;
-/// use tabletop_core::{Hand, Pose};
+/// use tabletop_core::Hand;
+/// use tabletop_geometry::Pose;
 /// use tabletop_recorder::Event;
 ///
 /// let pose = Pose::from_degrees(Vec3::new(2.0, 0.0, 1.0), Vec3::new(0.0, 0.0, 90.0));

@@ -1,6 +1,7 @@
 use bevy::time::TimeUpdateStrategy;
 use egui_kittest::{Harness, kittest::Queryable as _};
 use tabletop_core::CorePlugin;
+use tabletop_user::UserPlugin;
 
 use super::*;
 use crate::panels::test_click::after_click;
@@ -8,7 +9,7 @@ use crate::panels::test_click::after_click;
 #[test]
 fn the_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, CorePlugin::default()))
+    app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
         .init_resource::<Panels>()
         .add_systems(Update, open_at_first_grasp);

@@ -17,6 +17,8 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
 
 #[cfg(test)]
 mod tests {
+    use tabletop_user::UserPlugin;
+
     use super::*;
     use bevy::time::TimeUpdateStrategy;
     use tabletop_core::{Arm, CorePlugin, RobotFact};
@@ -31,7 +33,7 @@ mod tests {
     #[test]
     fn a_repeated_event_is_reported_last() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<Notices>();
         for id in ["red", "blue", "red"] {

@@ -137,6 +137,7 @@ fn imitate_or_stop(imitating: Res<Imitating>, mut orders: MessageWriter<TaskOrde
 mod tests {
     use bevy::time::TimeUpdateStrategy;
     use tabletop_core::{CorePlugin, IssuedCommand, SimCommand, SimTick};
+    use tabletop_user::UserPlugin;
 
     use super::*;
 
@@ -154,7 +155,7 @@ mod tests {
 
     fn app() -> App {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<ButtonInput<KeyCode>>()
             .init_resource::<PendingRequests>()
