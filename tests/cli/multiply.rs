@@ -242,7 +242,7 @@ fn another_robot_shows_it() {
     }
     replays_to_the_same_bytes(out.join("0000"));
     // Those of another robot are others.
-    let output = tabletop(&["multiply", &demo, "--robot", "--out", out.to_str().unwrap()]);
+    let output = tabletop(&["multiply", demo, "--robot", "--out", out.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
     let told = stderr(&output);
     assert!(told.contains("made with other options"), "{told}");

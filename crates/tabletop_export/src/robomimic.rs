@@ -2,7 +2,6 @@
 
 use std::{
     f64::consts::TAU,
-    io,
     path::{Path, PathBuf},
 };
 
@@ -228,7 +227,7 @@ fn empty_file() -> Result<Vec<u8>, Error> {
     file.add_group(data.finish());
     let mask = file.create_group("mask");
     file.add_group(mask.finish());
-    Ok(file.finish()?)
+    file.finish()
 }
 
 /// What a robomimic action of 1 stands for, for each of the numbers of a hand, or for every joint.
@@ -259,10 +258,8 @@ fn env_args(episode: &TrainingEpisode) -> String {
 }
 
 fn failed(path: &Path, error: Error) -> ExportError {
-    match error {
-        Error::Io(error) => ExportError::io(path)(error),
-        error => match io::Error::other(error.to_string()) {
-            error => ExportError::dataset(path, error),
-        },
+    if let Error::Io(error) = error {
+        return ExportError::io(path)(error);
     }
+    ExportError::dataset(path, error)
 }

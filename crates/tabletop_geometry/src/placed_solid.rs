@@ -50,7 +50,7 @@ impl PlacedSolid {
     pub fn radius(&self) -> f32 {
         match self.solid {
             Solid::Cuboid(span) => span.length() / 2.0,
-            Solid::Cylinder { radius, yspan } => radius.hypot(yspan / 2.0),
+            Solid::Cylinder { radius, yspan } => libm::hypotf(radius, yspan / 2.0),
             Solid::Ball(radius) => radius,
             Solid::Polyhedron(ref polyhedron) => polyhedron.radius(),
         }

@@ -96,12 +96,12 @@ impl DataFile {
 }
 
 fn failed(path: &Path, error: ParquetError) -> ExportError {
-    match error {
-        ParquetError::External(error) => match error.downcast::<io::Error>() {
-            Ok(error) => ExportError::io(path)(*error),
-            Err(error) => ExportError::dataset(path, error),
-        },
-        error => ExportError::dataset(path, error),
+    let ParquetError::External(error) = error else {
+        return ExportError::dataset(path, error);
+    };
+    match error.downcast::<io::Error>() {
+        Ok(error) => ExportError::io(path)(*error),
+        Err(error) => ExportError::dataset(path, error),
     }
 }
 

@@ -60,22 +60,12 @@ fn rows_of_frames(
     rows: StructArray,
     lengths: impl IntoIterator<Item = usize>,
 ) -> Column {
-    let item = Arc::new(Field::new(
-        "item",
-        DataType::Struct(rows.fields().clone()),
-        true,
-    ));
+    let item = Field::new("item", DataType::Struct(rows.fields().clone()), true);
+    let item = Arc::new(item);
     let offsets = OffsetBuffer::from_lengths(lengths);
+    let field = Field::new(name, DataType::List(item.clone()), true);
     let list = ListArray::new(item, offsets, Arc::new(rows), None);
-    let field = Field::new(name, DataType::List(list_item(&list)), true);
     (field, Arc::new(list))
-}
-
-fn list_item(list: &ListArray) -> Arc<Field> {
-    match arrow::array::Array::data_type(list) {
-        DataType::List(item) => item.clone(),
-        _ => unreachable!("a list array has a list's type"),
-    }
 }
 
 /// Calls of tools, as texts of JSON.

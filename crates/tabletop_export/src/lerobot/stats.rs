@@ -123,9 +123,9 @@ impl FeatureStats {
     fn from_json(value: &Value) -> Option<Self> {
         let numbers = |name: &str| -> Option<Vec<f64>> {
             let values = value.get(name)?.as_array()?;
-            let number = |value: &Value| match value {
-                Value::Array(inner) => inner.first()?.as_array()?.first()?.as_f64(),
-                value => value.as_f64(),
+            let number = |value: &Value| match value.as_array() {
+                Some(inner) => inner.first()?.as_array()?.first()?.as_f64(),
+                None => value.as_f64(),
             };
             values.iter().map(number).collect()
         };
