@@ -8,7 +8,7 @@
 //! data/chunk-000/file-000.parquet             a row a frame, a row group an episode
 //! ```
 //!
-//! Every export adds files and replaces the three first ones. They get their names together, by [`Commit`](commit::Commit).
+//! Every export adds files and replaces the three first ones. They get their names together, by [`Commit`].
 
 mod columns;
 mod commit;
