@@ -15,6 +15,9 @@ use crate::{
 /// The file in the folder that is locked as long as the program runs.
 const LOCK: &str = ".tabletop-lock";
 
+/// Its name until it is locked.
+const UNLOCKED: &str = ".tabletop-lock.new";
+
 /// Number of names that are tried.
 const NAMES: u32 = 1000;
 
@@ -43,17 +46,14 @@ impl LockedFolder {
     pub fn create(parent: &Path, prefix: &str, storage: &Storage) -> io::Result<Self> {
         remove_abandoned(parent, prefix, storage);
         let path = create_numbered(parent, prefix, storage)?;
-        match storage.create(&path.join(LOCK)) {
-            Ok(lock) => {
-                // A file system without locks is no obstacle: then nobody removes it.
-                let _has_locks = lock.is_locked_now();
-                Ok(Self {
-                    path,
-                    storage: storage.clone(),
-                    lock,
-                })
-            }
+        match create_locked(&path, storage) {
+            Ok(lock) => Ok(Self {
+                path,
+                storage: storage.clone(),
+                lock,
+            }),
             Err(error) => {
+                let _not_there = storage.remove_file(&path.join(UNLOCKED));
                 let _stays_empty = storage.remove_empty(&path);
                 Err(error)
             }
@@ -75,8 +75,9 @@ impl LockedFolder {
             storage,
             lock,
         } = self;
-        drop(lock);
+        // Held until nobody finds it any more.
         storage.remove_file(&path.join(LOCK))?;
+        drop(lock);
         Ok(path)
     }
 
@@ -90,10 +91,26 @@ impl LockedFolder {
             storage,
             lock,
         } = self;
-        remove_around_lock(&path, &storage)?;
-        drop(lock);
-        remove_lock(&path, &storage)
+        remove_locked(&path, lock, &storage)
     }
+}
+
+/// Makes the lock. Under its name, it is locked from the beginning, so that nobody takes the folder for abandoned.
+fn create_locked(folder: &Path, storage: &Storage) -> io::Result<StoredFile> {
+    let unlocked = folder.join(UNLOCKED);
+    let lock = storage.create(&unlocked)?;
+    // A file system without locks is no obstacle: then nobody removes the folder.
+    let _has_locks = lock.is_locked_now();
+    storage.rename(&unlocked, &folder.join(LOCK))?;
+    Ok(lock)
+}
+
+/// Removes a folder of which this is the lock.
+fn remove_locked(folder: &Path, lock: StoredFile, storage: &Storage) -> io::Result<()> {
+    remove_around_lock(folder, storage)?;
+    storage.remove_file(&folder.join(LOCK))?;
+    drop(lock);
+    storage.remove_empty(folder)
 }
 
 /// Removes all but the lock, which goes last: until then, the next program can go on.
@@ -107,11 +124,6 @@ fn remove_around_lock(folder: &Path, storage: &Storage) -> io::Result<()> {
         }
     }
     Ok(())
-}
-
-fn remove_lock(folder: &Path, storage: &Storage) -> io::Result<()> {
-    storage.remove_file(&folder.join(LOCK))?;
-    storage.remove_empty(folder)
 }
 
 fn create_numbered(parent: &Path, prefix: &str, storage: &Storage) -> io::Result<PathBuf> {
@@ -136,17 +148,22 @@ fn remove_abandoned(parent: &Path, prefix: &str, storage: &Storage) {
         let name = entry.file_name().unwrap_or_default().to_string_lossy();
         let number = name.strip_prefix(prefix);
         let is_of_this_kind = number.is_some_and(|number| number.parse::<u32>().is_ok());
-        if is_of_this_kind && !entry.is_symlink() && entry.is_dir() && is_abandoned(&entry, storage)
+        if is_of_this_kind
+            && !entry.is_symlink()
+            && entry.is_dir()
+            && let Some(lock) = lock_if_abandoned(&entry, storage)
         {
             // Another user's, or a disk that fails: it stays.
-            let _stays =
-                remove_around_lock(&entry, storage).and_then(|()| remove_lock(&entry, storage));
+            let _stays = remove_locked(&entry, lock, storage);
         }
     }
 }
 
-/// True if a folder's lock exists and nobody holds it.
-fn is_abandoned(folder: &Path, storage: &Storage) -> bool {
-    let lock = storage.open_to_read(&folder.join(LOCK));
-    lock.is_ok_and(|lock| lock.is_locked_now())
+/// The lock of a folder, locked, if nobody else holds it.
+fn lock_if_abandoned(folder: &Path, storage: &Storage) -> Option<StoredFile> {
+    let path = folder.join(LOCK);
+    let lock = storage.open_to_read(&path).ok()?;
+    // Meanwhile, another program may have removed the folder, and a third one may have made one of this name.
+    let is_abandoned = lock.is_locked_now() && lock.is_at(&path).unwrap_or(false);
+    is_abandoned.then_some(lock)
 }

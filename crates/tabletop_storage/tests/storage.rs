@@ -180,6 +180,27 @@ fn only_abandoned_folders_of_the_program_are_removed() {
 }
 
 #[test]
+fn folders_that_begin_at_the_same_time_keep_their_contents() {
+    let place = Place::new("locked_at_once");
+    let fill = || {
+        for _ in 0..300 {
+            let storage = Storage::default();
+            let folder = LockedFolder::create(&place.0, "new-", &storage).unwrap();
+            let content = folder.path().join("content");
+            fs::write(&content, "").unwrap();
+            std::thread::yield_now();
+            assert!(content.exists());
+            folder.remove().unwrap();
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(fill);
+        }
+    });
+}
+
+#[test]
 fn a_temporary_folder_goes_with_its_owner() {
     let folder = TemporaryFolder::new("tabletop-test-temporary").unwrap();
     let path = folder.path().to_owned();
