@@ -633,7 +633,8 @@ fn a_script_that_never_ends_is_ended() {
 /// Runs a shipped script for a moment in an empty folder.
 fn anywhere(script: &str) -> String {
     let mut run = command(&["run", "--script", script, "--seconds", "0.2"]);
-    let output = run.current_dir(folder("anywhere")).output().unwrap();
+    let empty = folder(&format!("anywhere-{}", script.replace([':', '/'], "-")));
+    let output = run.current_dir(empty).output().unwrap();
     succeeded(&output);
     stderr(&output)
 }
