@@ -128,7 +128,7 @@ fn of_several_that_start_at_once_one_gets_the_folder_and_nothing_is_left_of_the_
     }
 }
 
-/// Only a folder without a lock stays: one that was just made, or is about to get its name.
+/// Only a folder without a lock stays: one that was just made, whose lock is not locked yet, or that is about to get its name.
 #[cfg(unix)]
 #[test]
 fn leftovers_of_a_killed_starter_are_gone_with_the_next() {
@@ -156,7 +156,7 @@ fn leftovers_of_a_killed_starter_are_gone_with_the_next() {
         stayed += names.filter(|name| name.starts_with('.')).count();
     }
     assert!(tried > 20, "{tried}");
-    assert_eq!(stayed, 2, "of {tried}");
+    assert_eq!(stayed, 3, "of {tried}");
 }
 
 /// Files that were open go on elsewhere, and pictures would get into another folder.
