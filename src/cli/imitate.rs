@@ -137,6 +137,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
                 ));
             }
             trials.push(trial);
+            Ok(())
         },
     )?;
     let is_done = trials.iter().all(|trial| {

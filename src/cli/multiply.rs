@@ -211,6 +211,7 @@ fn make_all(
         outcome.note(number, &made);
         done += 1;
         progress.reach(done, &outcome.dropped_note());
+        Ok(())
     });
     progress.end();
     result?;

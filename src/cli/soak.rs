@@ -57,6 +57,7 @@ pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
                 memory_now() >> 20,
             ));
         }
+        Ok(())
     })?;
     match growth(&memory) {
         growth if growth > MOST_GROWTH => Err(Failure::run(format!(

@@ -193,6 +193,7 @@ const RULES: [Rule; 32] = [
         "tabletop_export",
         &[
             "tabletop_core",
+            "tabletop_episodes",
             "tabletop_geometry",
             "tabletop_recorder",
             "tabletop_storage",

@@ -1,59 +1,44 @@
-//! Numbered episodes, each in a world of its own, on several threads.
+//! Numbered episodes, on several threads, their results in order.
 
-use std::{
-    collections::BTreeMap,
-    sync::{Mutex, PoisonError, mpsc},
-    thread,
-};
+use std::{sync::mpsc, thread};
 
-/// Runs the episode of each number, so many at a time, and hands over the results in the order of the numbers. The first error ends it: no
-/// further episode begins. A single one at a time runs on this thread.
+/// Runs the episode of each number, so many at a time, and hands over the results in the order of the numbers. No thread is more than two
+/// episodes ahead, so results do not pile up. The first error, in this order, ends it. A single one at a time runs on this thread.
 ///
 /// # Errors
-/// The first error of an episode.
+/// The first error of an episode, or of `done`.
 pub fn run_episodes<T: Send, E: Send>(
-    numbers: impl IntoIterator<Item = u64, IntoIter: Send>,
+    numbers: impl IntoIterator<Item = u64, IntoIter: Clone + Send>,
     at_a_time: usize,
     episode: impl Fn(u64) -> Result<T, E> + Sync,
-    mut done: impl FnMut(u64, T),
+    mut done: impl FnMut(u64, T) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut numbers = numbers.into_iter();
     if at_a_time <= 1 {
-        return numbers.try_for_each(|number| {
-            done(number, episode(number)?);
-            Ok(())
-        });
+        return numbers.try_for_each(|number| done(number, episode(number)?));
     }
-    let numbers = Mutex::new(numbers.enumerate());
-    let next = || {
-        let mut numbers = numbers.lock().unwrap_or_else(PoisonError::into_inner);
-        numbers.next()
-    };
-    let (sender, results) = mpsc::channel();
     thread::scope(|scope| {
-        for _ in 0..at_a_time {
-            let sender = sender.clone();
-            let (next, episode) = (&next, &episode);
+        let workers = (0..at_a_time).map(|first| {
+            let (sender, results) = mpsc::sync_channel(1);
+            let (numbers, episode) = (numbers.clone(), &episode);
             scope.spawn(move || {
-                while let Some((turn, number)) = next() {
+                for number in numbers.skip(first).step_by(at_a_time) {
                     let result = episode(number);
                     let is_last = result.is_err();
-                    if sender.send((turn, number, result)).is_err() || is_last {
+                    if sender.send((number, result)).is_err() || is_last {
                         break;
                     }
                 }
             });
-        }
-        drop(sender);
-        // Results that have come before their turn.
-        let mut early = BTreeMap::new();
-        let mut due = 0;
-        for (turn, number, result) in results {
-            early.insert(turn, (number, result?));
-            while let Some((number, result)) = early.remove(&due) {
-                done(number, result);
-                due += 1;
-            }
+            results
+        });
+        let workers: Vec<_> = workers.collect();
+        for results in workers.iter().cycle() {
+            let Ok((number, result)) = results.recv() else {
+                // There are no more numbers.
+                break;
+            };
+            done(number, result?)?;
         }
         Ok(())
     })
@@ -77,6 +62,7 @@ mod tests {
         };
         let result = run_episodes(3..20, 4, later_ones_are_faster, |number, square| {
             found.push((number, square));
+            Ok(())
         });
         assert_eq!(result, Ok(()));
         let expected: Vec<_> = (3..20).map(|number| (number, number * number)).collect();
@@ -95,7 +81,10 @@ mod tests {
                 }
             };
             let mut last = None;
-            let result = run_episodes(0.., at_a_time, episode, |number, ()| last = Some(number));
+            let result = run_episodes(0.., at_a_time, episode, |number, ()| {
+                last = Some(number);
+                Ok(())
+            });
             assert_eq!(result, Err("five"));
             assert!(last.is_none_or(|last| last < 5), "{last:?}");
             assert!(at_a_time > 1 || begun.load(Ordering::Relaxed) == 6);
@@ -104,7 +93,7 @@ mod tests {
 
     #[test]
     fn without_numbers_nothing_happens() {
-        let result = run_episodes(0..0, 3, |_| Err::<(), _>("an episode"), |_, ()| {});
+        let result = run_episodes(0..0, 3, |_| Err::<(), _>("an episode"), |_, ()| Ok(()));
         assert_eq!(result, Ok(()));
     }
 }

@@ -1,6 +1,8 @@
 //! Formats, and the export of recordings to them.
 
-use std::{path::PathBuf, sync::mpsc, thread};
+use std::path::PathBuf;
+
+use tabletop_episodes::run_episodes;
 
 use crate::{episode::TrainingEpisode, error::ExportError, selection::EpisodeSelection};
 
@@ -49,37 +51,16 @@ pub fn export<F: DatasetFormat>(
     jobs: usize,
     mut tell: impl FnMut(ExportSummary),
 ) -> Result<ExportSummary, ExportError> {
-    let jobs = jobs.clamp(1, recordings.len().max(1));
     let mut summary = ExportSummary::default();
-    thread::scope(|scope| {
-        // Worker `k` makes the episodes k, k + jobs, … and keeps one ahead of the writer.
-        let workers: Vec<_> = (0..jobs)
-            .map(|first| {
-                let (sender, receiver) = mpsc::sync_channel(1);
-                scope.spawn(move || {
-                    for folder in recordings.iter().skip(first).step_by(jobs) {
-                        let prepared =
-                            TrainingEpisode::read(folder, selection).and_then(F::prepare);
-                        if sender.send(prepared).is_err() {
-                            // The writer has failed.
-                            break;
-                        }
-                    }
-                });
-                receiver
-            })
-            .collect();
-        for (number, folder) in recordings.iter().enumerate() {
-            let prepared = workers[number % jobs].recv();
-            let prepared = prepared.map_err(|_| ExportError::Unfit {
-                recording: folder.clone(),
-                problem: "the thread that read it has died".into(),
-            })??;
-            summary.frames += format.write(prepared)?;
-            summary.episodes += 1;
-            tell(summary);
-        }
-        Ok::<_, ExportError>(())
+    let prepare = |number: u64| {
+        let recording = &recordings[number as usize];
+        TrainingEpisode::read(recording, selection).and_then(F::prepare)
+    };
+    run_episodes(0..recordings.len() as u64, jobs, prepare, |_, prepared| {
+        summary.frames += format.write(prepared)?;
+        summary.episodes += 1;
+        tell(summary);
+        Ok(())
     })?;
     format.finish()?;
     Ok(summary)
