@@ -31,10 +31,9 @@ pub(crate) fn hand_motions(
                 true => (to.rotation * from.rotation.inverse()).to_scaled_axis(),
                 false => Vec3::ZERO,
             };
-            let grip = f32::from(u8::from(hand.held(*next).is_some()));
             signal.values.extend(way.to_array());
             signal.values.extend(turn.to_array());
-            signal.values.push(grip);
+            signal.values.push(hand.grip(*next));
         }
     }
     signal

@@ -1,32 +1,47 @@
 //! Formats of a file an episode.
 
-use std::path::PathBuf;
+use std::{fmt::Display, marker::PhantomData, path::PathBuf};
 
 use tabletop_storage::Storage;
 
-use crate::error::ExportError;
+use crate::{episode::TrainingEpisode, error::ExportError, format::DatasetFormat};
+
+/// A kind of file that holds an episode.
+pub trait EpisodeFile {
+    /// The end of its name.
+    const EXTENSION: &'static str;
+
+    /// The content of an episode's file.
+    ///
+    /// # Errors
+    /// The format cannot hold it.
+    fn content(episode: &TrainingEpisode) -> Result<Vec<u8>, impl Display>;
+}
 
 /// A folder with a file an episode: `episode-000000` and so on.
 #[derive(Debug)]
-pub(crate) struct EpisodeFiles {
+pub struct EpisodeFiles<F> {
     folder: PathBuf,
-    extension: &'static str,
     next: usize,
     storage: Storage,
+    kind: PhantomData<F>,
 }
 
-impl EpisodeFiles {
+impl<F: EpisodeFile> EpisodeFiles<F> {
     /// The folder; episodes that it has already stay.
-    pub fn open(folder: PathBuf, extension: &'static str) -> Result<Self, ExportError> {
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn open(folder: PathBuf) -> Result<Self, ExportError> {
         let storage = Storage::default();
         storage
             .create_folders(&folder)
             .map_err(ExportError::io(&folder))?;
         let mut files = Self {
             folder,
-            extension,
             next: 0,
             storage,
+            kind: PhantomData,
         };
         while files.path().exists() {
             files.next += 1;
@@ -35,19 +50,33 @@ impl EpisodeFiles {
     }
 
     fn path(&self) -> PathBuf {
-        let Self {
-            next, extension, ..
-        } = self;
-        self.folder.join(format!("episode-{next:06}.{extension}"))
+        let name = format!("episode-{:06}.{}", self.next, F::EXTENSION);
+        self.folder.join(name)
+    }
+}
+
+impl<F: EpisodeFile> DatasetFormat for EpisodeFiles<F> {
+    /// The content of a file, and the number of its frames.
+    type Prepared = (Vec<u8>, usize);
+
+    fn prepare(episode: TrainingEpisode) -> Result<Self::Prepared, ExportError> {
+        let content = F::content(&episode).map_err(|error| ExportError::Unfit {
+            recording: episode.folder.clone(),
+            problem: error.to_string(),
+        })?;
+        Ok((content, episode.len()))
     }
 
-    /// Writes the next episode, whole and on the disk.
-    pub fn write(&mut self, bytes: &[u8]) -> Result<(), ExportError> {
+    fn write(&mut self, (content, frames): Self::Prepared) -> Result<usize, ExportError> {
         let path = self.path();
         self.storage
-            .write_new(&path, bytes)
+            .write_new(&path, &content)
             .map_err(ExportError::io(&path))?;
         self.next += 1;
+        Ok(frames)
+    }
+
+    fn finish(self) -> Result<(), ExportError> {
         Ok(())
     }
 }

@@ -1,8 +1,9 @@
 //! MCAP: a file an episode, with messages of Foxglove's JSON schemas.
 
-use std::{collections::BTreeMap, io::Cursor, path::PathBuf};
+use std::{collections::BTreeMap, f32::consts::FRAC_PI_2, fmt::Display, io::Cursor};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
+use bevy::math::Quat;
 use mcap::{McapError, WriteOptions, Writer, records::MessageHeader};
 use serde_json::{Value, json};
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
@@ -10,47 +11,24 @@ use tabletop_geometry::{Pose, Primitive, Solid};
 
 use crate::{
     episode::{ObjectTrack, TrainingEpisode},
-    episode_files::EpisodeFiles,
-    error::ExportError,
-    format::DatasetFormat,
+    episode_files::{EpisodeFile, EpisodeFiles},
 };
 
 /// Metres per unit.
 const METERS: f32 = 0.1;
 
 /// A folder with an MCAP file an episode, for Foxglove and Rerun: pictures, transforms, shapes, joints and sentences. Lengths in metres.
+pub type Mcap = EpisodeFiles<McapFile>;
+
+/// An MCAP file.
 #[derive(Debug)]
-pub struct Mcap(EpisodeFiles);
+pub struct McapFile;
 
-impl Mcap {
-    /// The folder; episodes that it has already stay.
-    ///
-    /// # Errors
-    /// It cannot be made.
-    pub fn open(folder: PathBuf) -> Result<Self, ExportError> {
-        Ok(Self(EpisodeFiles::open(folder, "mcap")?))
-    }
-}
+impl EpisodeFile for McapFile {
+    const EXTENSION: &'static str = "mcap";
 
-impl DatasetFormat for Mcap {
-    /// The bytes of a file, and the number of its frames.
-    type Prepared = (Vec<u8>, usize);
-
-    fn prepare(episode: TrainingEpisode) -> Result<Self::Prepared, ExportError> {
-        let bytes = file_of(&episode).map_err(|error| ExportError::Unfit {
-            recording: episode.folder.clone(),
-            problem: error.to_string(),
-        })?;
-        Ok((bytes, episode.len()))
-    }
-
-    fn write(&mut self, (bytes, frames): Self::Prepared) -> Result<usize, ExportError> {
-        self.0.write(&bytes)?;
-        Ok(frames)
-    }
-
-    fn finish(self) -> Result<(), ExportError> {
-        Ok(())
+    fn content(episode: &TrainingEpisode) -> Result<Vec<u8>, impl Display> {
+        file_of(episode)
     }
 }
 
@@ -120,9 +98,9 @@ fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, McapError> {
             });
             file.say(topic, tick, &picture)?;
         }
-        let there = |object: &&ObjectTrack| object.poses[frame].is_some();
-        let objects = episode.objects.iter().filter(there);
-        let moved: Vec<_> = objects
+        let moved: Vec<_> = episode
+            .objects
+            .iter()
             .filter_map(|object| {
                 let Pose { location, rotation } = object.poses[frame]?;
                 Some(json!({
@@ -189,30 +167,27 @@ fn entity(object: &ObjectTrack, tick: SimTick) -> Value {
     for Primitive { pose, solid, color } in object.spec.shape.drawn() {
         let [r, g, b] = color.to_bytes().map(|value| f32::from(value) / 255.0);
         let color = json!({ "r": r, "g": g, "b": b, "a": 1.0 });
-        let pose = json!({
-            "position": vector((pose.location * METERS).to_array()),
-            "orientation": quaternion(pose.rotation.to_array()),
-        });
+        let placed = |Pose { location, rotation }: Pose| {
+            json!({
+                "position": vector((location * METERS).to_array()),
+                "orientation": quaternion(rotation.to_array()),
+            })
+        };
         match solid {
             Solid::Cuboid(span) => cubes.push(json!({
-                "pose": pose, "size": vector((span * METERS).to_array()), "color": color,
+                "pose": placed(pose), "size": vector((span * METERS).to_array()), "color": color,
             })),
             Solid::Ball(radius) => {
                 let size = vector([2.0 * radius * METERS; 3]);
-                spheres.push(json!({ "pose": pose, "size": size, "color": color }));
+                spheres.push(json!({ "pose": placed(pose), "size": size, "color": color }));
             }
             Solid::Cylinder { radius, yspan } => {
                 // Theirs stand along Z, ours along Y.
-                let upright = Pose::from_degrees(Default::default(), bevy::math::Vec3::X * 90.0);
-                let turned = json!({
-                    "position": pose["position"],
-                    "orientation": quaternion(
-                        (quaternion_of(&pose["orientation"]) * upright.rotation).to_array()
-                    ),
-                });
+                let upright = Quat::from_rotation_x(FRAC_PI_2);
+                let turned = Pose::new(pose.location, pose.rotation * upright);
                 let size = vector([2.0 * radius * METERS, 2.0 * radius * METERS, yspan * METERS]);
                 cylinders.push(json!({
-                    "pose": turned, "size": size, "bottom_scale": 1.0, "top_scale": 1.0,
+                    "pose": placed(turned), "size": size, "bottom_scale": 1.0, "top_scale": 1.0,
                     "color": color,
                 }));
             }
@@ -224,7 +199,7 @@ fn entity(object: &ObjectTrack, tick: SimTick) -> Value {
                     .collect();
                 let indices: Vec<_> = polyhedron.triangles().iter().flatten().collect();
                 triangles.push(json!({
-                    "pose": pose, "points": points, "color": color, "colors": [],
+                    "pose": placed(pose), "points": points, "color": color, "colors": [],
                     "indices": indices,
                 }));
             }
@@ -244,10 +219,4 @@ fn vector([x, y, z]: [f32; 3]) -> Value {
 
 fn quaternion([x, y, z, w]: [f32; 4]) -> Value {
     json!({ "x": x, "y": y, "z": z, "w": w })
-}
-
-fn quaternion_of(value: &Value) -> bevy::math::Quat {
-    let [x, y, z, w] =
-        ["x", "y", "z", "w"].map(|part| value[part].as_f64().unwrap_or_default() as f32);
-    bevy::math::Quat::from_xyzw(x, y, z, w)
 }

@@ -89,6 +89,11 @@ impl HandTrack {
         hold.map(|hold| hold.object.as_str())
     }
 
+    /// 1 if it holds something at the end of a tick, otherwise 0.
+    pub fn grip(&self, tick: SimTick) -> f32 {
+        f32::from(u8::from(self.held(tick).is_some()))
+    }
+
     /// Its pose at the end of a tick, level while it holds nothing.
     pub fn pose(&self, shown: &Demonstration, tick: SimTick) -> Pose {
         let of = |object: &str, tick| shown.named(object).and_then(|it| it.track.at(tick));

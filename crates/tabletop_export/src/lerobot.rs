@@ -165,8 +165,8 @@ impl DatasetFormat for LeRobot {
             recording: episode.folder.clone(),
             problem,
         };
-        let mut info = match self.info.take() {
-            Some(info) => info,
+        let mut info = match &self.info {
+            Some(info) => info.clone(),
             None => Info::of(&episode, self.has_language),
         };
         info.check(&episode, self.has_language).map_err(unfit)?;

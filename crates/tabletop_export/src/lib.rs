@@ -30,11 +30,12 @@ mod selection;
 mod sentence;
 
 pub use episode::{CameraTrack, FrameVectors, ObjectTrack, Subtask, TrainingEpisode};
+pub use episode_files::{EpisodeFile, EpisodeFiles};
 pub use error::ExportError;
 pub use format::{DatasetFormat, ExportSummary, export};
-pub use foxglove::Mcap;
+pub use foxglove::{Mcap, McapFile};
 pub use image::Image;
 pub use lerobot::LeRobot;
-pub use matlab::Matlab;
+pub use matlab::{Matlab, MatlabFile};
 pub use robomimic::Robomimic;
 pub use selection::{ActionKind, EpisodeSelection, StateKind};

@@ -1,49 +1,26 @@
 //! MATLAB: a `.mat` file (v7.3) an episode.
 
-use std::path::PathBuf;
+use std::fmt::Display;
 
 use hdf5_pure::mat::{MatBuilder, MatError, Options};
 
 use crate::{
     episode::{CameraTrack, FrameVectors, TrainingEpisode},
-    episode_files::EpisodeFiles,
-    error::ExportError,
-    format::DatasetFormat,
+    episode_files::{EpisodeFile, EpisodeFiles},
 };
 
 /// A folder with a `.mat` file an episode: numbers and pictures as arrays, names and sentences as texts, a line each.
+pub type Matlab = EpisodeFiles<MatlabFile>;
+
+/// A `.mat` file.
 #[derive(Debug)]
-pub struct Matlab(EpisodeFiles);
+pub struct MatlabFile;
 
-impl Matlab {
-    /// The folder; episodes that it has already stay.
-    ///
-    /// # Errors
-    /// It cannot be made.
-    pub fn open(folder: PathBuf) -> Result<Self, ExportError> {
-        Ok(Self(EpisodeFiles::open(folder, "mat")?))
-    }
-}
+impl EpisodeFile for MatlabFile {
+    const EXTENSION: &'static str = "mat";
 
-impl DatasetFormat for Matlab {
-    /// The bytes of a file, and the number of its frames.
-    type Prepared = (Vec<u8>, usize);
-
-    fn prepare(episode: TrainingEpisode) -> Result<Self::Prepared, ExportError> {
-        let bytes = file_of(&episode).map_err(|error| ExportError::Unfit {
-            recording: episode.folder.clone(),
-            problem: error.to_string(),
-        })?;
-        Ok((bytes, episode.len()))
-    }
-
-    fn write(&mut self, (bytes, frames): Self::Prepared) -> Result<usize, ExportError> {
-        self.0.write(&bytes)?;
-        Ok(frames)
-    }
-
-    fn finish(self) -> Result<(), ExportError> {
-        Ok(())
+    fn content(episode: &TrainingEpisode) -> Result<Vec<u8>, impl Display> {
+        file_of(episode)
     }
 }
 

@@ -170,9 +170,7 @@ fn object_state(
             signal
                 .values
                 .extend(hand.pose(shown, tick).location.to_array());
-            signal
-                .values
-                .push(f32::from(u8::from(hand.held(tick).is_some())));
+            signal.values.push(hand.grip(tick));
         }
     }
     signal

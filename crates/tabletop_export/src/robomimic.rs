@@ -25,14 +25,8 @@ pub struct Robomimic {
     file: File,
     demonstrations: usize,
     frames: usize,
-    /// The shape of each demonstration.
-    shape: Option<DemonstrationShape>,
-}
-
-/// What all demonstrations of a file have in common.
-#[derive(Clone, Debug, PartialEq)]
-struct DemonstrationShape {
-    env_args: String,
+    /// What all demonstrations have in common, once there is one.
+    env_args: Option<String>,
 }
 
 impl Robomimic {
@@ -53,16 +47,13 @@ impl Robomimic {
         let frames = frames.ok_or_else(|| ExportError::dataset(&path, "data has no total"))?;
         let demonstrations = data.groups().map_err(|error| failed(&path, error))?.len();
         let env_args = attributes.get("env_args").and_then(AttrValue::as_str);
-        let shape = env_args.filter(|_| demonstrations > 0);
-        let shape = shape.map(|env_args| DemonstrationShape {
-            env_args: env_args.to_owned(),
-        });
+        let env_args = env_args.filter(|_| demonstrations > 0);
         Ok(Self {
+            env_args: env_args.map(str::to_owned),
             path,
             file,
             demonstrations,
             frames: frames.max(0) as usize,
-            shape,
         })
     }
 
@@ -188,20 +179,11 @@ impl DatasetFormat for Robomimic {
 
     fn write(&mut self, episode: TrainingEpisode) -> Result<usize, ExportError> {
         let env_args = env_args(&episode);
-        match &self.shape {
-            Some(shape) if shape.env_args != env_args => {
-                return Err(ExportError::Unfit {
-                    recording: episode.folder,
-                    problem: "its states, actions or frames a second are not those of the file"
-                        .into(),
-                });
-            }
-            Some(_) => {}
-            None => {
-                self.shape = Some(DemonstrationShape {
-                    env_args: env_args.clone(),
-                });
-            }
+        if self.env_args.get_or_insert_with(|| env_args.clone()) != &env_args {
+            return Err(ExportError::Unfit {
+                recording: episode.folder,
+                problem: "its states, actions or frames a second are not those of the file".into(),
+            });
         }
         let name = format!("data/demo_{}", self.demonstrations);
         self.add(&episode, &name, &env_args)

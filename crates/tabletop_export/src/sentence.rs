@@ -40,8 +40,12 @@ pub(crate) fn parts(task: &Task, start: SimTick) -> Vec<(SimTick, String)> {
 
 /// What is done with the object in hand: the step's sentence, in which the object is `it`.
 fn deed(step: &TaskStep, noun: &str) -> String {
-    let sentence = step.sentence.trim_end_matches('.').replacen(noun, "it", 1);
-    let mut letters = sentence.chars();
+    clause(&step.sentence.replacen(noun, "it", 1))
+}
+
+/// A sentence as part of another.
+fn clause(sentence: &str) -> String {
+    let mut letters = sentence.trim_end_matches('.').chars();
     let first = letters.next().map(|letter| letter.to_ascii_lowercase());
     first.into_iter().chain(letters).collect()
 }
@@ -53,22 +57,14 @@ pub(crate) fn paraphrases(task: &Task, instruction: &str) -> Vec<String> {
         ("Pick up ", "Take "),
         ("Remove ", "Clear away "),
     ];
-    let plain: Vec<_> = task
-        .steps
-        .iter()
-        .map(|step| {
-            let sentence = step.sentence.trim_end_matches('.');
-            let mut letters = sentence.chars();
-            let first = letters.next().map(|letter| letter.to_ascii_lowercase());
-            first.into_iter().chain(letters).collect::<String>()
-        })
-        .collect();
+    let steps = task.steps.iter();
+    let clauses: Vec<_> = steps.map(|step| clause(&step.sentence)).collect();
     let other = words
         .iter()
         .fold(instruction.to_owned(), |text, (from, to)| {
             text.replace(from, to)
         });
-    let told = (!plain.is_empty()).then(|| format!("Please {}.", plain.join(", then ")));
+    let told = (!clauses.is_empty()).then(|| format!("Please {}.", clauses.join(", then ")));
     let mut all: Vec<_> = [Some(other), told].into_iter().flatten().collect();
     all.retain(|text| text != instruction && !text.is_empty());
     all

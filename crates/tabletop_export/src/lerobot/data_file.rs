@@ -23,15 +23,15 @@ use crate::{episode::TrainingEpisode, error::ExportError};
 pub(super) struct DataFile {
     path: PathBuf,
     place: DataPlace,
-    writer: ArrowWriter<CountingFile>,
+    writer: ArrowWriter<ParquetFile>,
     has_language: bool,
 }
 
 /// A file that is written by others' code.
 #[derive(Debug)]
-struct CountingFile(StoredFile);
+struct ParquetFile(StoredFile);
 
-impl Write for CountingFile {
+impl Write for ParquetFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.0.append(bytes).map(|()| bytes.len())
     }
@@ -56,7 +56,7 @@ impl DataFile {
             // Never by itself: readers rely on one group an episode.
             .set_max_row_group_row_count(Some(usize::MAX))
             .build();
-        let writer = ArrowWriter::try_new(CountingFile(file), schema, Some(properties));
+        let writer = ArrowWriter::try_new(ParquetFile(file), schema, Some(properties));
         let writer = writer.map_err(|error| failed(&path, error))?;
         Ok(Self {
             path,

@@ -250,10 +250,13 @@ fn other_folders_and_other_episodes_are_refused() {
 
     let folder = fresh("lerobot_mixed");
     add(&folder, Storage::default(), 1).unwrap();
-    let mut dataset = LeRobot::open(folder).unwrap();
+    let mut dataset = LeRobot::open(folder.clone()).unwrap();
     let mut other = episode();
     other.state.names[0] = "Blue.x".into();
     let error = dataset.write(LeRobot::prepare(other).unwrap());
     let error = error.unwrap_err().to_string();
     assert!(error.contains("its observation.state is"), "{error}");
+    dataset.write(LeRobot::prepare(episode()).unwrap()).unwrap();
+    dataset.finish().unwrap();
+    assert_eq!(whole_episodes(&folder), 2, "a refused one changes nothing");
 }
