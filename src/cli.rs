@@ -12,6 +12,7 @@ mod explain;
 mod export;
 mod failure;
 mod faultless;
+mod film_camera;
 mod hand_cameras;
 mod imitate;
 mod init;
@@ -20,10 +21,13 @@ mod keys;
 mod man;
 mod multiply;
 mod output;
+mod picture_size;
 mod progress;
 mod range;
 mod recorded;
+mod recordings;
 mod replay;
+mod report;
 mod require;
 mod robot;
 mod robot_options;
@@ -31,6 +35,7 @@ mod run;
 mod script;
 mod soak;
 mod terminal;
+mod video;
 mod window;
 
 use std::{env, process::ExitCode};
@@ -70,6 +75,10 @@ enum Command {
     Multiply(multiply::MultiplyArgs),
     /// Write recordings as a dataset that other tools read
     Export(export::ExportArgs),
+    /// Make a video, an animation or a contact sheet of a recording
+    Video(video::VideoArgs),
+    /// Make a page of one recording, or a table of many, that any browser shows
+    Report(report::ReportArgs),
     /// Check task files and report every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
@@ -105,6 +114,7 @@ Examples:
   tabletop explain demo                         say what it shows
   tabletop multiply demo --count 100 --out many make a hundred of it, with everything elsewhere
   tabletop export many --to lerobot dataset     make a dataset of them that LeRobot reads
+  tabletop video demo demo.mp4 --captions       make a video of the recording
   tabletop run --script python --seconds 20     let a script drive the robot
   tabletop init work                            write all shipped files to a folder, to change them
 
@@ -131,6 +141,8 @@ pub fn main() -> ExitCode {
         Some(Command::Imitate(args)) => imitate::run(&args),
         Some(Command::Multiply(args)) => multiply::run(&args),
         Some(Command::Export(args)) => export::run(&args),
+        Some(Command::Video(args)) => video::run(&args),
+        Some(Command::Report(args)) => report::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]

@@ -55,6 +55,7 @@ pub use tabletop_episodes::{
     imitation, multiplication, robot_body, run_episodes, scene_at_beginning, shown_task, soak,
 };
 pub use tabletop_export as export;
+pub use tabletop_film as film;
 pub use tabletop_geometry as geometry;
 #[cfg(feature = "window")]
 pub use tabletop_gui as gui;
@@ -66,6 +67,7 @@ pub use tabletop_physics as physics;
 pub use tabletop_planner as planner;
 pub use tabletop_recorder as recorder;
 pub use tabletop_replay as replay;
+pub use tabletop_report as report;
 pub use tabletop_robot as robot;
 pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;

@@ -1,25 +1,26 @@
 //! `tabletop export`: recordings as datasets of other tools.
 
-use std::{
-    ffi::OsString,
-    fs,
-    path::{Path, PathBuf},
-    process::ExitCode,
-    thread,
-    time::Instant,
-};
+use std::{ffi::OsString, path::PathBuf, process::ExitCode, thread, time::Instant};
 
 use clap::{Args, ValueEnum};
 use tabletop::{
+    core::TICKS_PER_SECOND,
     export::{
         ActionKind, DatasetFormat, EpisodeSelection, ExportError, ExportSummary, LeRobot, Matlab,
-        Mcap, Robomimic, StateKind, export,
+        Mcap, PictureSelection, Rlds, Robomimic, StateKind, export,
     },
     recorder::RecordingReader,
 };
 
 use super::{
-    Failure, Output, cut_off::say_if_cut_off, progress::ProgressLine, range::NumberRange,
+    Failure, Output,
+    allowed_paths::AllowedPaths,
+    cut_off::say_if_cut_off,
+    film_camera::{FilmCameras, cameras},
+    picture_size::picture_size,
+    progress::ProgressLine,
+    range::NumberRange,
+    recordings::recordings_in,
     terminal::show_warnings,
 };
 
@@ -29,7 +30,7 @@ pub(super) struct ExportArgs {
     #[arg(value_name = "DIR", required = true)]
     recordings: Vec<PathBuf>,
     /// The format, and the folder or file to write, to which further exports add episodes: `lerobot` (LeRobotDataset v3.0, a folder),
-    /// `robomimic` (an HDF5 file), `mcap` or `mat` (a folder with a file an episode, for Foxglove and Rerun, or MATLAB)
+    /// `robomimic` (an HDF5 file), `rlds` (a folder, for TensorFlow Datasets), `mcap` or `mat` (a folder with a file an episode, for Foxglove and Rerun, or MATLAB)
     #[arg(long, value_names = ["FORMAT", "OUT"], num_args = 2, required = true)]
     to: Vec<OsString>,
     /// The state of a frame [default: objects; with the robot if it moves]
@@ -38,12 +39,40 @@ pub(super) struct ExportArgs {
     /// The action of a frame [default: hands; joints if the robot moves]
     #[arg(long, value_name = "KIND")]
     action: Option<ActionChoice>,
+    /// Pictures a second, a divisor of 60 [default: the recorded 4]
+    #[arg(long, value_name = "N", value_parser = picture_rate, allow_negative_numbers = true)]
+    fps: Option<u32>,
+    /// The size of pictures, with sides from 1 to 8192 pixels, and 16777216 pixels at most [default: as recorded]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = picture_size)]
+    size: Option<(u32, u32)>,
+    /// The cameras, separated by commas: `head`, hand cameras such as `left_hand`, and names with a location and, if it is not the centre of
+    /// the table, the point that they look at, in units of 10 cm: `side=14,0,8` or `side=14,0,8,0,0,1` [default: as recorded]
+    #[arg(long, value_name = "LIST", value_parser = cameras)]
+    cameras: Option<FilmCameras>,
+    /// Write the pictures of a LeRobot dataset as videos (AV1), which are smaller and not quite the same
+    #[arg(long)]
+    video: bool,
+    /// Add the distance of each pixel, in m
+    #[arg(long)]
+    depth: bool,
+    /// Add the number of the thing at each pixel: 0 nothing, 1 the table, n + 1 the n-th object, 65535 anything else
+    #[arg(long)]
+    ids: bool,
+    #[command(flatten)]
+    allowed: AllowedPaths,
     /// Leave out the columns with the parts of the task, which LeRobot reads from version 0.6 on
     #[arg(long)]
     no_language: bool,
     /// Number of recordings read at a time, from 1 to 256 [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
+}
+
+/// Reads a number of pictures a second.
+fn picture_rate(text: &str) -> Result<u32, String> {
+    let rate = text.parse().ok();
+    rate.filter(|rate| *rate > 0 && TICKS_PER_SECOND.is_multiple_of(*rate))
+        .ok_or_else(|| "expected 1, 2, 3, 4, 5, 6, 10, 12, 15, 20, 30 or 60".into())
 }
 
 const JOBS: NumberRange<usize> = NumberRange::whole(1, 256);
@@ -64,6 +93,8 @@ enum ActionChoice {
     Hands,
     /// The positions of the robot's joints in the next frame
     Joints,
+    /// The motion of each end effector until the next frame, and the opening of its gripper then
+    EndEffector,
 }
 
 /// Exports the recordings.
@@ -72,10 +103,15 @@ pub(super) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     let [format, out] = &args.to[..] else {
         return Err(Failure::input("--to takes a format and a place"));
     };
-    let recordings = found(&args.recordings)?;
+    let recordings = recordings_in(&args.recordings)?;
     for recording in &recordings {
         let recording = RecordingReader::open(recording).map_err(Failure::input)?;
         say_if_cut_off(&recording, "exported");
+    }
+    if args.video && format != "lerobot" {
+        return Err(Failure::input(
+            "--video goes with --to lerobot: no other format has videos",
+        ));
     }
     let out = PathBuf::from(out);
     let start = Instant::now();
@@ -90,11 +126,12 @@ pub(super) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
         }
         Some("robomimic") => args.export(&recordings, Robomimic::open(out).map_err(failed)?),
         Some("mcap") => args.export(&recordings, Mcap::open(out).map_err(failed)?),
+        Some("rlds") => args.export(&recordings, Rlds::open(out).map_err(failed)?),
         Some("mat") => args.export(&recordings, Matlab::open(out).map_err(failed)?),
         _ => {
             let format = format.display();
             return Err(Failure::input(format!(
-                "there is no format {format}; expected lerobot, robomimic, mcap or mat"
+                "there is no format {format}; expected lerobot, robomimic, rlds, mcap or mat"
             )));
         }
     }?;
@@ -117,7 +154,17 @@ impl ExportArgs {
             action: self.action.map(|action| match action {
                 ActionChoice::Hands => ActionKind::Hands,
                 ActionChoice::Joints => ActionKind::Joints,
+                ActionChoice::EndEffector => ActionKind::EndEffectors,
             }),
+            pictures: PictureSelection {
+                fps: self.fps,
+                size: self.size.map(|(width, height)| [width, height]),
+                cameras: self.cameras.clone().map(|FilmCameras(cameras)| cameras),
+                has_video: self.video,
+                has_depth: self.depth,
+                has_ids: self.ids,
+            },
+            allowed: self.allowed.folders.clone(),
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let jobs = self.jobs.unwrap_or(cores);
@@ -142,42 +189,4 @@ fn reported(summary: ExportSummary, seconds: f64) -> String {
     let ExportSummary { episodes, frames } = summary;
     let rate = frames as f64 / seconds.max(1e-3);
     format!("{episodes} episodes, {frames} frames; {rate:.0} frames a second.\n")
-}
-
-/// The recordings in these folders: each of them, or those in it, numbers in their order.
-fn found(folders: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let is_recording = |folder: &Path| folder.join("session.jsonl").exists();
-    let mut all = Vec::new();
-    for folder in folders {
-        if is_recording(folder) {
-            all.push(folder.clone());
-            continue;
-        }
-        let entries = fs::read_dir(folder)
-            .map_err(|error| Failure::input(format!("{}: {error}", folder.display())))?;
-        let mut inner: Vec<_> = entries
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|path| is_recording(path))
-            .filter(|path| !name_of(path).starts_with('.'))
-            .collect();
-        if inner.is_empty() {
-            return Err(Failure::input(format!(
-                "{}: neither a recording nor a folder of recordings",
-                folder.display()
-            )));
-        }
-        inner.sort_by_key(|path| {
-            let name = name_of(path);
-            (name.parse().unwrap_or(u64::MAX), name)
-        });
-        all.extend(inner);
-    }
-    Ok(all)
-}
-
-fn name_of(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into()
 }

@@ -31,6 +31,11 @@ impl ProgressLine {
         }
     }
 
+    /// Sets the number of all items.
+    pub const fn expect(&mut self, all: u64) {
+        self.all = all;
+    }
+
     /// Shows the number of done items, with a note behind.
     pub fn reach(&mut self, done: u64, note: &str) {
         let is_recent = self.shown.is_some_and(|shown| shown.elapsed() < PERIOD);

@@ -5,7 +5,7 @@ use std::{path::PathBuf, process::ExitCode};
 use bevy::{math::Vec3, prelude::*};
 use clap::Args;
 use tabletop::{
-    core::{HeadCamera, Picture, SimTick, StepApp as _, TICKS_PER_SECOND},
+    core::{HeadCamera, SimTick, StepApp as _, TICKS_PER_SECOND},
     geometry::Pose,
     headless_app_with,
     recorder::{Channels, RecorderPlugin, RecordingReport},
@@ -19,6 +19,7 @@ use super::{
     cut_off::say_if_cut_off,
     duration::{SECONDS, ticks},
     hand_cameras::HandCameraOption,
+    picture_size::picture_size,
     progress::ProgressLine,
     range::NumberRange,
     recorded::say_moved_aside,
@@ -65,7 +66,7 @@ pub(super) struct ReplayArgs {
 #[group(multiple = true, conflicts_with_all = ["verify", "window"], requires = "out")]
 struct PictureArgs {
     /// Make the pictures again at another size, with sides from 1 to 8192 pixels, and 16777216 pixels at most
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = picture_size)]
     render: Option<(u32, u32)>,
     /// Make the pictures again from another place, with coordinates from -1000 to 1000 units of 10 cm
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
@@ -87,29 +88,9 @@ struct PictureArgs {
     ids: bool,
 }
 
-/// Sides of pictures, in pixels.
-const SIDES: NumberRange<u32> = NumberRange::whole(1, Picture::MOST_SIDE);
 /// Coordinates of cameras, in units.
 const COORDINATES: NumberRange<f32> = NumberRange::decimal(-1000.0, 1000.0);
 const ANGLES_OF_VIEW: NumberRange<f32> = NumberRange::decimal(1.0, 179.0).of("degrees");
-
-/// Reads a picture size such as `640x480`.
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let sides = text.split_once('x');
-    let sides =
-        sides.and_then(|(width, height)| Some((SIDES.read(width).ok()?, SIDES.read(height).ok()?)));
-    let (width, height) =
-        sides.ok_or_else(|| format!("expected a width and a height {SIDES}, such as 640x480"))?;
-    let camera = HeadCamera {
-        width,
-        height,
-        ..default()
-    };
-    match camera.fault() {
-        Some(fault) => Err(fault),
-        None => Ok((width, height)),
-    }
-}
 
 /// Reads a point such as `0,-8,12.5`.
 fn point(text: &str) -> Result<Vec3, String> {

@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 32] = [
+const RULES: [Rule; 34] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -190,13 +190,39 @@ const RULES: [Rule; 32] = [
         ],
     ),
     Rule::new(
+        "tabletop_film",
+        &[
+            "tabletop_camera",
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_recorder",
+            "tabletop_replay",
+            "tabletop_robot",
+            "tabletop_sim",
+            "tabletop_task",
+        ],
+    ),
+    Rule::new(
         "tabletop_export",
         &[
             "tabletop_core",
             "tabletop_episodes",
+            "tabletop_film",
             "tabletop_geometry",
             "tabletop_recorder",
+            "tabletop_replay",
+            "tabletop_robot",
             "tabletop_storage",
+            "tabletop_task",
+        ],
+    ),
+    Rule::new(
+        "tabletop_report",
+        &[
+            "tabletop_core",
+            "tabletop_export",
+            "tabletop_geometry",
+            "tabletop_recorder",
             "tabletop_task",
         ],
     ),
@@ -232,6 +258,8 @@ const RULES: [Rule; 32] = [
             "tabletop_demonstrator",
             "tabletop_export",
             "tabletop_episodes",
+            "tabletop_film",
+            "tabletop_report",
             "tabletop_mechanism",
             "tabletop_history",
             "tabletop_kinematics",

@@ -6,6 +6,7 @@ mod anywhere;
 mod cut_off;
 mod element_docs;
 mod explain;
+mod export;
 mod imitate;
 mod kept;
 #[cfg(feature = "window")]
@@ -17,6 +18,7 @@ mod multiply;
 mod originals;
 mod ranges;
 mod replay;
+mod report;
 mod require;
 mod robot;
 mod scenarios;
@@ -26,5 +28,6 @@ mod strange_scenes;
 mod support;
 mod task_files;
 mod usage;
+mod video;
 #[cfg(feature = "window")]
 mod window;

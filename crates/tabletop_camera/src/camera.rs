@@ -8,7 +8,7 @@ use bevy::{
     math::{Mat3A, Vec2, Vec3, Vec3A},
     prelude::Quat,
 };
-use tabletop_core::{HeadCamera, Light, Table};
+use tabletop_core::{HandCamera, HeadCamera, Light, Table};
 use tabletop_geometry::Pose;
 
 pub(crate) use linear::{Linear, OnRow, Rays, SampleOffset};
@@ -49,6 +49,19 @@ impl Camera {
             square_fov: head.square_fov,
             width: head.width,
             height: head.height,
+            antialiasing: head.antialiasing,
+            light: head.light,
+        }
+    }
+
+    /// A camera in the robot's hand, at this pose, with the smoothing and in the light of the head camera.
+    pub fn of_hand(hand: &HandCamera, pose: Pose, head: &HeadCamera) -> Self {
+        Self {
+            pose,
+            vertical_fov: hand.vertical_fov,
+            square_fov: false,
+            width: hand.width,
+            height: hand.height,
             antialiasing: head.antialiasing,
             light: head.light,
         }

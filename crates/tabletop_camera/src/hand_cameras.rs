@@ -42,15 +42,7 @@ pub(crate) fn render_hand_cameras(
             picture.resize(0, 0);
             continue;
         };
-        let camera = Camera {
-            pose,
-            vertical_fov: camera.vertical_fov,
-            square_fov: false,
-            width: camera.width,
-            height: camera.height,
-            antialiasing: head.antialiasing,
-            light: head.light,
-        };
+        let camera = Camera::of_hand(camera, pose, &head);
         rasterizers[i].draw(scene, &camera, picture);
     }
     images.tick = *tick;

@@ -55,6 +55,7 @@ mod visible_world;
 pub use camera::Camera;
 pub use raster::Rasterizer;
 pub use scene::{DrawnFigure, DrawnSolid, Facets, Scene};
+pub use visible_world::{FiguresSeen, VisibleWorld};
 
 /// The names that most users of this crate need.
 pub mod prelude {

@@ -26,9 +26,9 @@ pub(crate) struct DrawnFacets {
 #[derive(Resource, Debug, Default)]
 pub(crate) struct FigureCount(u64);
 
-/// The world as cameras see it.
+/// The present world as cameras see it, for systems that draw pictures of their own with a [`Rasterizer`](crate::Rasterizer).
 #[derive(SystemParam)]
-pub(crate) struct VisibleWorld<'w, 's> {
+pub struct VisibleWorld<'w, 's> {
     index: Res<'w, ObjectIndex>,
     tables: Query<'w, 's, (Entity, &'static Table)>,
     objects: Query<'w, 's, (&'static Transform, &'static ObjectSolids), With<ObjectSpec>>,
@@ -47,7 +47,7 @@ pub(crate) struct VisibleWorld<'w, 's> {
 
 /// The figures that a camera sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FiguresSeen {
+pub enum FiguresSeen {
     /// All but those that carry the head camera.
     FromHead,
     /// All.

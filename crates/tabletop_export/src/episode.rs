@@ -3,6 +3,7 @@
 use std::{path::PathBuf, sync::Arc};
 
 use tabletop_core::{ObjectSpec, SimTick};
+use tabletop_film::{VideoPacket, VideoTrack};
 use tabletop_geometry::Pose;
 
 use crate::{image::Image, selection::ActionKind};
@@ -59,6 +60,22 @@ pub struct CameraTrack {
     pub name: String,
     /// The pictures. Frames in which nothing has changed share one.
     pub images: Vec<Arc<Image>>,
+    /// Distances of each pixel along the axis of view in m, 0 where nothing is: one for each picture, or none at all.
+    pub depths: Vec<Arc<Vec<f32>>>,
+    /// The same pictures as a video, if one was asked for.
+    pub video: Option<EncodedVideo>,
+    /// The thing at each pixel's centre: 0 nothing, 1 the table, n + 1 the n-th object, 65535 anything else. One for each picture, or none at
+    /// all.
+    pub ids: Vec<Arc<Vec<u16>>>,
+}
+
+/// Pictures as a video: AV1, of which every other frame can be decoded by itself.
+#[derive(Clone, Debug)]
+pub struct EncodedVideo {
+    /// Its size and rate.
+    pub track: VideoTrack,
+    /// Its frames.
+    pub packets: Vec<VideoPacket>,
 }
 
 /// A part of a task.

@@ -2,7 +2,9 @@
 
 use std::{io, path::PathBuf};
 
+use tabletop_film::FilmError;
 use tabletop_recorder::RecorderError;
+use tabletop_replay::ReplayError;
 use tabletop_task::RequirementError;
 use thiserror::Error;
 
@@ -15,6 +17,12 @@ pub enum ExportError {
     /// The requirements of a recording's task cannot be read.
     #[error(transparent)]
     Requirements(#[from] RequirementError),
+    /// A recording cannot be simulated again.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// Pictures cannot be made.
+    #[error(transparent)]
+    Film(#[from] FilmError),
     /// A recording does not fit the dataset.
     #[error("{}: {problem}", .recording.display())]
     Unfit {
@@ -47,6 +55,8 @@ impl ExportError {
         match self {
             Self::Recording(_)
             | Self::Requirements(_)
+            | Self::Replay(_)
+            | Self::Film(_)
             | Self::Unfit { .. }
             | Self::Dataset { .. } => true,
             Self::Io { .. } => false,

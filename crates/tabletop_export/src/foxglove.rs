@@ -10,7 +10,7 @@ use tabletop_core::{SimTick, TICKS_PER_SECOND};
 use tabletop_geometry::{Pose, Primitive, Solid};
 
 use crate::{
-    episode::{ObjectTrack, TrainingEpisode},
+    episode::{CameraTrack, ObjectTrack, TrainingEpisode},
     episode_files::{EpisodeFile, EpisodeFiles},
 };
 
@@ -80,9 +80,17 @@ fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, McapError> {
     let options = WriteOptions::new().compression(None).library("tabletop");
     let mut file = File(options.create(Cursor::new(Vec::new()))?);
     let mut cameras = Vec::new();
+    let mut raw = Vec::new();
     for camera in &episode.cameras {
         let name = format!("/camera/{}", camera.name);
         cameras.push((camera, file.topic(&name, "foxglove.CompressedImage")?));
+        for channel in [RawChannel::Depth, RawChannel::Ids] {
+            if channel.is_in(camera) {
+                let topic =
+                    file.topic(&format!("{name}/{}", channel.name()), "foxglove.RawImage")?;
+                raw.push((camera, channel, topic));
+            }
+        }
     }
     let mut transforms = file.topic("/tf", "foxglove.FrameTransforms")?;
     let mut scene = file.topic("/scene", "foxglove.SceneUpdate")?;
@@ -95,6 +103,15 @@ fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, McapError> {
             let data = STANDARD.encode(&camera.images[frame].png);
             let picture = json!({
                 "timestamp": stamp(tick), "frame_id": camera.name, "format": "png", "data": data,
+            });
+            file.say(topic, tick, &picture)?;
+        }
+        for (camera, channel, topic) in &mut raw {
+            let image = &camera.images[frame];
+            let data = STANDARD.encode(channel.bytes(camera, frame));
+            let picture = json!({
+                "timestamp": stamp(tick), "frame_id": camera.name, "width": image.width,
+                "height": image.height, "encoding": "16UC1", "step": image.width * 2, "data": data,
             });
             file.say(topic, tick, &picture)?;
         }
@@ -158,6 +175,47 @@ fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, McapError> {
     }
     file.0.finish()?;
     Ok(file.0.into_inner().into_inner())
+}
+
+/// Values of pixels beside a picture, in 16 bits.
+#[derive(Clone, Copy)]
+enum RawChannel {
+    /// Distances, in mm.
+    Depth,
+    /// The numbers of things.
+    Ids,
+}
+
+impl RawChannel {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Depth => "depth",
+            Self::Ids => "ids",
+        }
+    }
+
+    const fn is_in(self, camera: &CameraTrack) -> bool {
+        match self {
+            Self::Depth => !camera.depths.is_empty(),
+            Self::Ids => !camera.ids.is_empty(),
+        }
+    }
+
+    /// The values of a frame's pixels, the lower byte first.
+    fn bytes(self, camera: &CameraTrack, frame: usize) -> Vec<u8> {
+        match self {
+            Self::Depth => {
+                let depths = camera.depths[frame].iter();
+                let millimeters = depths.map(|depth| (depth * 1000.0).round() as u16);
+                millimeters.flat_map(u16::to_le_bytes).collect()
+            }
+            Self::Ids => camera.ids[frame]
+                .iter()
+                .copied()
+                .flat_map(u16::to_le_bytes)
+                .collect(),
+        }
+    }
 }
 
 /// An object that is drawn in its own frame from now on.

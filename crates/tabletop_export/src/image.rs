@@ -66,7 +66,8 @@ impl Image {
         Self::new(info.width, info.height, rgb).map_err(|error| error.to_string())
     }
 
-    fn new(width: u32, height: u32, rgb: Vec<u8>) -> Result<Self, png::EncodingError> {
+    /// A picture of these pixels.
+    pub(crate) fn new(width: u32, height: u32, rgb: Vec<u8>) -> Result<Self, png::EncodingError> {
         let mut png = Vec::new();
         let mut encoder = png::Encoder::new(&mut png, width, height);
         encoder.set_color(png::ColorType::Rgb);
@@ -82,6 +83,22 @@ impl Image {
             png,
         })
     }
+}
+
+/// Values of pixels in 16 bits as a PNG file.
+pub(crate) fn gray_png(width: u32, height: u32, values: &[u16]) -> Vec<u8> {
+    let bytes: Vec<u8> = values.iter().copied().flat_map(u16::to_be_bytes).collect();
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, width, height);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    encoder.set_compression(png::Compression::Fast);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(&bytes)?;
+        writer.finish()
+    });
+    debug_assert!(written.is_ok(), "a picture has the size of its camera");
+    png
 }
 
 #[cfg(test)]

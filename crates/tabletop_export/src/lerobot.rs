@@ -6,6 +6,7 @@
 //! meta/tasks.parquet                          the instructions
 //! meta/episodes/chunk-000/file-000.parquet    a row an episode
 //! data/chunk-000/file-000.parquet             a row a frame, a row group an episode
+//! videos/FEATURE/chunk-000/file-000.mp4       the pictures, if they are videos
 //! ```
 //!
 //! Every export adds files and replaces the three first ones. They get their names together, by [`Commit`].
@@ -20,6 +21,7 @@ mod place;
 mod stats;
 mod table;
 mod task_table;
+mod video_file;
 
 use std::{
     collections::BTreeMap,
@@ -29,12 +31,22 @@ use std::{
 use tabletop_storage::{FolderLock, Storage};
 
 use self::{
-    commit::Commit, data_file::DataFile, episode_table::EpisodeRow, info::Info, place::DataPlace,
+    commit::Commit,
+    data_file::DataFile,
+    episode_table::{EpisodeRow, VideoPart},
+    info::{Info, feature_of_camera},
+    place::DataPlace,
     stats::FeatureStats,
+    video_file::VideoFile,
 };
-use crate::{episode::TrainingEpisode, error::ExportError, format::DatasetFormat};
+use crate::{
+    episode::{EncodedVideo, TrainingEpisode},
+    error::ExportError,
+    format::DatasetFormat,
+};
 
-/// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames: nothing is lost.
+/// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames, so that nothing is lost;
+/// those of cameras with a [video](crate::CameraTrack::video) are videos instead.
 #[derive(Debug)]
 pub struct LeRobot {
     folder: PathBuf,
@@ -45,6 +57,9 @@ pub struct LeRobot {
     stats: BTreeMap<String, FeatureStats>,
     rows: Vec<EpisodeRow>,
     file: Option<DataFile>,
+    /// The videos that get episodes, by their features, and the numbers of the next ones.
+    videos: BTreeMap<String, VideoFile>,
+    next_videos: BTreeMap<String, usize>,
     next_file: usize,
     has_language: bool,
     /// Nobody else writes to it meanwhile.
@@ -92,7 +107,7 @@ impl LeRobot {
             None => Default::default(),
         };
         Ok(Self {
-            next_file: place::count(&folder),
+            next_file: place::count(&folder, "data", "parquet"),
             has_language: info.as_ref().is_none_or(Info::has_language),
             folder,
             storage,
@@ -102,6 +117,8 @@ impl LeRobot {
             stats,
             rows: Vec::new(),
             file: None,
+            videos: BTreeMap::new(),
+            next_videos: BTreeMap::new(),
             _lock: lock,
         })
     }
@@ -134,13 +151,55 @@ impl LeRobot {
             None => {
                 let place = DataPlace::of(self.next_file);
                 self.next_file += 1;
-                let (path, file) =
-                    self.commit
-                        .create(&place.path("data"), &self.folder, &self.storage)?;
+                let (path, file) = self.commit.create(
+                    &place.path("data", "parquet"),
+                    &self.folder,
+                    &self.storage,
+                )?;
                 DataFile::new(path, file, place, episode, self.has_language)?
             }
         };
         Ok(self.file.insert(file))
+    }
+
+    /// Adds the videos of an episode. Returns their places.
+    fn add_videos(
+        &mut self,
+        episode: &TrainingEpisode,
+    ) -> Result<BTreeMap<String, VideoPart>, ExportError> {
+        let mut parts = BTreeMap::new();
+        for camera in &episode.cameras {
+            let Some(video) = &camera.video else {
+                continue;
+            };
+            let feature = feature_of_camera(&camera.name);
+            let open = self.videos.remove(&feature);
+            let mut file = match open {
+                Some(file) if file.is_full() => {
+                    file.close()?;
+                    self.new_video(&feature, video)?
+                }
+                Some(file) => file,
+                None => self.new_video(&feature, video)?,
+            };
+            parts.insert(feature.clone(), file.add(video)?);
+            self.videos.insert(feature, file);
+        }
+        Ok(parts)
+    }
+
+    fn new_video(&mut self, feature: &str, video: &EncodedVideo) -> Result<VideoFile, ExportError> {
+        let kind = format!("videos/{feature}");
+        let next = match self.next_videos.get(feature) {
+            Some(next) => *next,
+            None => place::count(&self.folder, &kind, "mp4"),
+        };
+        self.next_videos.insert(feature.to_owned(), next + 1);
+        let place = DataPlace::of(next);
+        let (path, file) =
+            self.commit
+                .create(&place.path(&kind, "mp4"), &self.folder, &self.storage)?;
+        VideoFile::new(path, file, place, video)
     }
 
     fn close_file(&mut self) -> Result<(), ExportError> {
@@ -177,12 +236,12 @@ impl DatasetFormat for LeRobot {
             task_number: task,
             frames: episode.len(),
             first_frame: info.total_frames,
-            place: DataPlace::default(),
-            stats: BTreeMap::new(),
+            ..EpisodeRow::default()
         };
         let file = self.file_for(&episode)?;
         file.write(&episode, &row)?;
         let place = file.place();
+        let videos = self.add_videos(&episode)?;
         stats.extend(stats::of_counters(
             &episode,
             [row.number, row.first_frame, row.task_number],
@@ -198,6 +257,7 @@ impl DatasetFormat for LeRobot {
         self.info = Some(info);
         self.rows.push(EpisodeRow {
             place,
+            videos,
             stats,
             ..row
         });
@@ -206,6 +266,9 @@ impl DatasetFormat for LeRobot {
 
     fn finish(mut self) -> Result<(), ExportError> {
         self.close_file()?;
+        for (_, video) in std::mem::take(&mut self.videos) {
+            video.close()?;
+        }
         let Some(mut info) = self.info.take() else {
             return Ok(());
         };
@@ -213,7 +276,7 @@ impl DatasetFormat for LeRobot {
         if let Some(first) = self.rows.first() {
             let place = first.place;
             let table = episode_table::write(&self.rows, place)?;
-            let path = place.path("meta/episodes");
+            let path = place.path("meta/episodes", "parquet");
             self.commit
                 .add(&path, &table, &self.folder, &self.storage)?;
         }

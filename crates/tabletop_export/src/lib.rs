@@ -15,6 +15,7 @@
 //! ```
 
 mod action;
+mod camera_track;
 mod episode;
 mod episode_files;
 mod error;
@@ -25,11 +26,11 @@ mod image;
 mod lerobot;
 mod matlab;
 mod reading;
+mod rlds;
 mod robomimic;
 mod selection;
-mod sentence;
 
-pub use episode::{CameraTrack, FrameVectors, ObjectTrack, Subtask, TrainingEpisode};
+pub use episode::{CameraTrack, EncodedVideo, FrameVectors, ObjectTrack, Subtask, TrainingEpisode};
 pub use episode_files::{EpisodeFile, EpisodeFiles};
 pub use error::ExportError;
 pub use format::{DatasetFormat, ExportSummary, export};
@@ -37,5 +38,6 @@ pub use foxglove::{Mcap, McapFile};
 pub use image::Image;
 pub use lerobot::LeRobot;
 pub use matlab::{Matlab, MatlabFile};
+pub use rlds::{EpisodeRecord, Rlds};
 pub use robomimic::Robomimic;
-pub use selection::{ActionKind, EpisodeSelection, StateKind};
+pub use selection::{ActionKind, EpisodeSelection, PictureSelection, StateKind};

@@ -7,6 +7,7 @@ use hdf5_pure::mat::{MatBuilder, MatError, Options};
 use crate::{
     episode::{CameraTrack, FrameVectors, TrainingEpisode},
     episode_files::{EpisodeFile, EpisodeFiles},
+    image::Image,
 };
 
 /// A folder with a `.mat` file an episode: numbers and pictures as arrays, names and sentences as texts, a line each.
@@ -54,6 +55,20 @@ fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, MatError> {
             let size = [first.height as usize, first.width as usize, 3, frames];
             let name = format!("{}_image", camera.name);
             file.write_u8(&name, &size, &planes(camera))?;
+            let size = [first.height as usize, first.width as usize, frames];
+            if !camera.depths.is_empty() {
+                let depths = camera
+                    .depths
+                    .iter()
+                    .flat_map(|depths| columns(depths, first));
+                let depths: Vec<f32> = depths.collect();
+                file.write_f32(&format!("{}_depth", camera.name), &size, &depths)?;
+            }
+            if !camera.ids.is_empty() {
+                let ids = camera.ids.iter().flat_map(|ids| columns(ids, first));
+                let ids: Vec<u16> = ids.collect();
+                file.write_u16(&format!("{}_ids", camera.name), &size, &ids)?;
+            }
         }
     }
     file.finish()
@@ -80,4 +95,11 @@ fn planes(camera: &CameraTrack) -> Vec<u8> {
         }
     }
     planes
+}
+
+/// The values of a picture's pixels, column by column.
+fn columns<T: Copy>(values: &[T], picture: &Image) -> Vec<T> {
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    let places = (0..width).flat_map(|column| (0..height).map(move |row| row * width + column));
+    places.map(|place| values[place]).collect()
 }

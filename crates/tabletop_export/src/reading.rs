@@ -1,23 +1,19 @@
 //! Episodes, read from recordings.
 
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::path::Path;
 
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
 use tabletop_recorder::{JointRow, RecordingReader};
+use tabletop_replay::Replay;
 use tabletop_task::{Demonstration, Requirements, Task};
 
 use crate::{
-    action::hand_motions,
-    episode::{CameraTrack, FrameVectors, ObjectTrack, Subtask, TrainingEpisode},
+    action::{end_effector_motions, hand_motions},
+    camera_track::{filmed_cameras, recorded_cameras},
+    episode::{EncodedVideo, FrameVectors, ObjectTrack, Subtask, TrainingEpisode},
     error::ExportError,
     hand_track::{HANDS, HandTrack},
-    image::Image,
     selection::{ActionKind, EpisodeSelection, StateKind},
-    sentence,
 };
 
 impl TrainingEpisode {
@@ -32,8 +28,11 @@ impl TrainingEpisode {
         let requirements = Requirements::read_for(&task, folder)?;
         task.phrase(&requirements);
 
-        let ticks_per_frame = recording.header().ticks_per_frame;
-        let ticks = frame_ticks(&recording);
+        let ticks_per_frame = recording.header().ticks_per_frame.max(1);
+        let recorded_fps = TICKS_PER_SECOND / ticks_per_frame as u32;
+        let pictures = &selection.pictures;
+        let fps = pictures.fps.unwrap_or(recorded_fps);
+        let ticks = frame_ticks(&recording, u64::from(TICKS_PER_SECOND / fps.max(1)));
         let rows = recording.joints()?;
         let joints = joint_positions(&rows, &ticks);
         let robot_acts = is_moved(&joints);
@@ -55,28 +54,45 @@ impl TrainingEpisode {
             StateKind::Both => beside(&joints, &object_state(&shown, &objects, &hands, &ticks)),
         };
         let action_kind = action;
+        let mut replay = None;
         let action = match action {
             ActionKind::Hands => hand_motions(&shown, &hands, &ticks),
             ActionKind::Joints => shifted(&joints),
+            ActionKind::EndEffectors => {
+                let replay =
+                    replay.get_or_insert(Replay::read_allowing(folder, &selection.allowed)?);
+                end_effector_motions(replay, &joints)?
+            }
         };
-        let cameras = camera_tracks(&recording, ticks.len())?;
-        let instruction = sentence::instruction(&task);
+        let mut cameras = match pictures.are_recorded(recorded_fps) {
+            true => recorded_cameras(&recording, ticks.len())?,
+            false => {
+                let replay =
+                    replay.get_or_insert(Replay::read_allowing(folder, &selection.allowed)?);
+                filmed_cameras(replay, &shown, pictures, &ticks)?
+            }
+        };
+        if pictures.has_video {
+            for camera in &mut cameras {
+                camera.video = Some(EncodedVideo::of(&camera.images, fps)?);
+            }
+        }
         let frame_of = |tick: SimTick| ticks.partition_point(|at| *at < tick).min(ticks.len() - 1);
-        let subtasks = sentence::parts(&task, recording.first_tick());
+        let subtasks = task.parts(recording.first_tick());
         let subtasks = subtasks.into_iter().map(|(tick, sentence)| Subtask {
             frame: frame_of(tick),
             sentence,
         });
         Ok(Self {
             folder: folder.to_owned(),
-            fps: TICKS_PER_SECOND / ticks_per_frame as u32,
+            fps,
             state,
             action,
             action_kind,
             objects,
             cameras,
-            paraphrases: sentence::paraphrases(&task, &instruction),
-            task: instruction,
+            paraphrases: task.paraphrases(),
+            task: task.instruction(),
             subtasks: subtasks.collect(),
             ticks,
         })
@@ -84,9 +100,9 @@ impl TrainingEpisode {
 }
 
 /// The ticks whose ends the frames show: at equal intervals, and the last one.
-fn frame_ticks(recording: &RecordingReader) -> Vec<SimTick> {
+fn frame_ticks(recording: &RecordingReader, step: u64) -> Vec<SimTick> {
     let (first, last) = (recording.first_tick().0, recording.last_tick().0);
-    let step = recording.header().ticks_per_frame.max(1);
+    let step = step.max(1);
     let frames = last.saturating_sub(first).div_ceil(step);
     (0..=frames)
         .map(|frame| SimTick((first + frame * step).min(last)))
@@ -190,43 +206,4 @@ fn object_tracks(shown: &Demonstration, ticks: &[SimTick]) -> Vec<ObjectTrack> {
         }
     });
     tracks.collect()
-}
-
-/// The pictures of every camera at every frame.
-fn camera_tracks(
-    recording: &RecordingReader,
-    frames: usize,
-) -> Result<Vec<CameraTrack>, ExportError> {
-    let segments = recording.segments()?;
-    let recorded = segments.iter().flat_map(|segment| &segment.frames);
-    let recorded: BTreeMap<_, _> = recorded.map(|frame| (frame.number, frame)).collect();
-    let of_hands = recording.header().hand_cameras.iter();
-    let hands = of_hands.map(|camera| camera.name.as_str());
-    let mut tracks = Vec::new();
-    for name in std::iter::once("head").chain(hands) {
-        let picture = |number: u64| -> Option<&PathBuf> {
-            let frame = recorded.get(&number)?;
-            match name {
-                "head" => Some(&frame.picture),
-                hand => frame.hand_pictures.get(hand),
-            }
-        };
-        let mut images = Vec::with_capacity(frames);
-        let mut latest: Option<Arc<Image>> = None;
-        for number in 0..frames as u64 {
-            if let Some(path) = picture(number) {
-                latest = Some(Arc::new(Image::read(path)?));
-            }
-            let image = latest.clone().ok_or_else(|| ExportError::Unfit {
-                recording: recording.folder().to_owned(),
-                problem: format!("its first frame has no picture of the {name} camera"),
-            })?;
-            images.push(image);
-        }
-        tracks.push(CameraTrack {
-            name: name.to_owned(),
-            images,
-        });
-    }
-    Ok(tracks)
 }

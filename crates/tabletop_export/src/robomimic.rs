@@ -16,6 +16,12 @@ use crate::{
 /// Every so many demonstrations, one is for validation.
 const VALIDATION: usize = 10;
 
+/// The speed of a hand that an action of 1 stands for, in units/s.
+const FASTEST: f64 = 40.0;
+
+/// The opening of a gripper that an action of 1 stands for, in units.
+const WIDEST: f64 = 2.0;
+
 /// The compression of pictures.
 const DEFLATE: u32 = 4;
 
@@ -65,7 +71,7 @@ impl Robomimic {
             group.set_attr("num_samples", AttrValue::I64(frames as i64));
             group.set_attr("ep_meta", AttrValue::VarLenString(meta));
         })?;
-        let scale = scale(episode.action_kind, episode.fps);
+        let scale = scale(episode);
         let action = |(i, value): (usize, &f32)| f64::from(*value) / scale[i % scale.len()];
         let actions: Vec<f64> = episode
             .action
@@ -120,6 +126,34 @@ impl Robomimic {
                     .with_chunks(&[1, height, width, 3])
                     .with_deflate(DEFLATE);
             })?;
+            let shape = [frames, height, width, 1];
+            let chunks = [1, height, width, 1];
+            if !camera.depths.is_empty() {
+                let depths: Vec<f32> = camera
+                    .depths
+                    .iter()
+                    .flat_map(|it| it.iter().copied())
+                    .collect();
+                root.create_dataset(&format!("{name}/obs/{}_depth", camera.name), |set| {
+                    set.with_f32_data(&depths)
+                        .with_shape(&shape)
+                        .with_chunks(&chunks)
+                        .with_deflate(DEFLATE);
+                })?;
+            }
+            if !camera.ids.is_empty() {
+                let ids: Vec<u16> = camera
+                    .ids
+                    .iter()
+                    .flat_map(|it| it.iter().copied())
+                    .collect();
+                root.create_dataset(&format!("{name}/obs/{}_ids", camera.name), |set| {
+                    set.with_u16_data(&ids)
+                        .with_shape(&shape)
+                        .with_chunks(&chunks)
+                        .with_deflate(DEFLATE);
+                })?;
+            }
         }
         let data = self.file.group("data")?;
         let total = (self.frames + episode.len()) as i64;
@@ -160,7 +194,7 @@ impl DatasetFormat for Robomimic {
     type Prepared = TrainingEpisode;
 
     fn prepare(episode: TrainingEpisode) -> Result<TrainingEpisode, ExportError> {
-        let scale = scale(episode.action_kind, episode.fps);
+        let scale = scale(&episode);
         let values = episode.action.values.iter().enumerate();
         let mut beyond =
             values.filter(|(i, value)| f64::from(value.abs()) > scale[i % scale.len()]);
@@ -212,13 +246,17 @@ fn empty_file() -> Result<Vec<u8>, Error> {
     file.finish()
 }
 
-/// What a robomimic action of 1 stands for, for each of the numbers of a hand, or for every joint.
-fn scale(kind: ActionKind, fps: u32) -> Vec<f64> {
-    match kind {
-        ActionKind::Hands => {
-            let way = 40.0 / f64::from(fps);
-            let turn = TAU / 2.0;
-            vec![way, way, way, turn, turn, turn, 1.0]
+/// What a robomimic action of 1 stands for: of each of the hands' and end effectors' numbers, or of every joint.
+fn scale(episode: &TrainingEpisode) -> Vec<f64> {
+    let of_part = |name: &String| match name.rsplit_once('.') {
+        Some((_, "dx" | "dy" | "dz")) => FASTEST / f64::from(episode.fps),
+        Some((_, "drx" | "dry" | "drz")) => TAU / 2.0,
+        Some((_, "opening")) => WIDEST,
+        _ => 1.0,
+    };
+    match episode.action_kind {
+        ActionKind::Hands | ActionKind::EndEffectors => {
+            episode.action.names.iter().map(of_part).collect()
         }
         ActionKind::Joints => vec![TAU],
     }
@@ -233,7 +271,7 @@ fn env_args(episode: &TrainingEpisode) -> String {
             "fps": episode.fps,
             "state_names": episode.state.names,
             "action_names": episode.action.names,
-            "action_scale": scale(episode.action_kind, episode.fps),
+            "action_scale": scale(episode),
         },
     })
     .to_string()

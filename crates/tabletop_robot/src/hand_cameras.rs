@@ -1,7 +1,7 @@
 //! The places of the cameras in the robot's hands.
 
-use bevy::prelude::*;
-use tabletop_core::{HandImages, Robot, Table};
+use bevy::{ecs::system::SystemParam, prelude::*};
+use tabletop_core::{HandCamera, HandImages, Robot, Table};
 use tabletop_geometry::Pose;
 
 use crate::articulation::{
@@ -9,20 +9,31 @@ use crate::articulation::{
     tree::{Articulation, Posture, in_units},
 };
 
+/// The robot that carries hand cameras.
+#[derive(SystemParam)]
+pub struct HandCameraCarrier<'w, 's> {
+    articulation: Res<'w, Articulation>,
+    tables: Query<'w, 's, &'static Table>,
+    robot: Res<'w, Robot>,
+}
+
+impl HandCameraCarrier<'_, '_> {
+    /// The present poses of these cameras, in the table's frame and in units; `None` for one whose link the robot lacks.
+    pub fn poses(&self, cameras: &[HandCamera]) -> Vec<Option<Pose>> {
+        let table = self.tables.iter().next().copied().unwrap_or_default();
+        let base = self.articulation.layout.base.pose(&table);
+        let posture = self.articulation.posture(&positions(&self.robot), base);
+        let place = |link| link_pose(&self.articulation, &posture, link);
+        let poses = cameras.iter();
+        poses
+            .map(|camera| Some(place(&camera.link)? * camera.mount))
+            .collect()
+    }
+}
+
 /// Places the hand cameras that are asked for pictures where the joints have brought them.
-pub(crate) fn place_hand_cameras(
-    articulation: Res<Articulation>,
-    tables: Query<&Table>,
-    robot: Res<Robot>,
-    mut images: ResMut<HandImages>,
-) {
-    let table = tables.iter().next().copied().unwrap_or_default();
-    let base = articulation.layout.base.pose(&table);
-    let posture = articulation.posture(&positions(&robot), base);
-    let place = |link| link_pose(&articulation, &posture, link);
-    let poses = images.asked().iter();
-    let poses = poses.map(|camera| Some(place(&camera.link)? * camera.mount));
-    images.poses = poses.collect();
+pub(crate) fn place_hand_cameras(carrier: HandCameraCarrier, mut images: ResMut<HandImages>) {
+    images.poses = carrier.poses(images.asked());
 }
 
 /// Pose of a link in a posture, in units; `None` if the robot has no link of this name.

@@ -21,6 +21,7 @@ pub use articulation::{
     tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition, in_meters, in_units},
 };
 pub use description::{Description, DescriptionError};
+pub use hand_cameras::HandCameraCarrier;
 pub use plugin::RobotPlugin;
 pub use source::DescriptionSource;
 

@@ -23,6 +23,7 @@ mod detour;
 mod furniture;
 mod goal;
 mod inference;
+mod instruction;
 mod manipulation;
 mod noun;
 mod operation;

@@ -29,6 +29,11 @@ pub(super) fn float32(name: &str, values: impl IntoIterator<Item = f32>) -> Colu
     column(name, Arc::new(Float32Array::from_iter_values(values)))
 }
 
+/// Numbers of 64 bits.
+pub(super) fn float64(name: &str, values: impl IntoIterator<Item = f64>) -> Column {
+    column(name, Arc::new(Float64Array::from_iter_values(values)))
+}
+
 /// Texts.
 pub(super) fn strings<'t>(name: &str, values: impl IntoIterator<Item = &'t str>) -> Column {
     column(name, Arc::new(StringArray::from_iter_values(values)))
@@ -43,6 +48,13 @@ pub(super) fn vectors(name: &str, width: usize, values: &[f32]) -> Column {
         name,
         Arc::new(FixedSizeListArray::new(item, width, values, None)),
     )
+}
+
+/// Pictures of numbers: of each row, so many rows and columns.
+pub(super) fn pictures(name: &str, [rows, columns]: [usize; 2], values: ArrayRef) -> Column {
+    let count = values.len() / columns.max(1);
+    let lines = list(values, std::iter::repeat_n(columns, count));
+    lists(name, lines, std::iter::repeat_n(rows, count / rows.max(1)))
 }
 
 /// Files, each with its name: the form in which `datasets` keeps pictures.

@@ -3,15 +3,17 @@
 use std::{
     io::{self, Write},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
+use arrow::array::{Float32Array, Int32Array};
 use parquet::{arrow::ArrowWriter, errors::ParquetError};
 use tabletop_storage::StoredFile;
 
 use super::{
     columns::{self, Column},
     episode_table::EpisodeRow,
-    info::feature_of_camera,
+    info::{feature_of_camera, feature_of_depth, feature_of_ids},
     language,
     place::{DataPlace, MOST_FILE_BYTES},
     table::{batch, properties, schema_of},
@@ -116,12 +118,37 @@ fn columns_of(episode: &TrainingEpisode, row: &EpisodeRow, has_language: bool) -
         ),
         columns::vectors("action", episode.action.names.len(), &episode.action.values),
     ];
-    for camera in &episode.cameras {
+    for camera in episode
+        .cameras
+        .iter()
+        .filter(|camera| camera.video.is_none())
+    {
         columns.push(columns::files(
             &feature_of_camera(&camera.name),
             camera.images.iter().map(|image| image.png.as_slice()),
             (0..frames).map(|frame| format!("frame-{frame:06}.png")),
         ));
+    }
+    for camera in &episode.cameras {
+        let size = camera.images.first();
+        let size = size.map_or([0, 0], |image| {
+            [image.height as usize, image.width as usize]
+        });
+        if !camera.depths.is_empty() {
+            let values = camera
+                .depths
+                .iter()
+                .flat_map(|depths| depths.iter().copied());
+            let values = Float32Array::from_iter_values(values);
+            let name = feature_of_depth(&camera.name);
+            columns.push(columns::pictures(&name, size, Arc::new(values)));
+        }
+        if !camera.ids.is_empty() {
+            let values = camera.ids.iter().flat_map(|ids| ids.iter().copied());
+            let values = Int32Array::from_iter_values(values.map(i32::from));
+            let name = feature_of_ids(&camera.name);
+            columns.push(columns::pictures(&name, size, Arc::new(values)));
+        }
     }
     if has_language {
         columns.push(language::persistent(episode));

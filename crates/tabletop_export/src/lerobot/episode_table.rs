@@ -28,13 +28,25 @@ pub(super) struct EpisodeRow {
     pub first_frame: usize,
     /// The file of its frames.
     pub place: DataPlace,
+    /// The parts of videos that show it, by their features.
+    pub videos: BTreeMap<String, VideoPart>,
     /// The statistics of its features.
     pub stats: BTreeMap<String, FeatureStats>,
 }
 
+/// A part of a video.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct VideoPart {
+    /// The video.
+    pub place: DataPlace,
+    /// Its beginning and end, in s.
+    pub times: [f64; 2],
+}
+
 /// The table of these episodes, as the file at a place.
 pub(super) fn write(rows: &[EpisodeRow], place: DataPlace) -> Result<Vec<u8>, ExportError> {
-    table(rows, place).map_err(|error| ExportError::dataset(place.path("meta/episodes"), error))
+    table(rows, place)
+        .map_err(|error| ExportError::dataset(place.path("meta/episodes", "parquet"), error))
 }
 
 fn table(rows: &[EpisodeRow], place: DataPlace) -> Result<Vec<u8>, ArrowError> {
@@ -50,6 +62,20 @@ fn table(rows: &[EpisodeRow], place: DataPlace) -> Result<Vec<u8>, ArrowError> {
         number("dataset_from_index", |row| row.first_frame),
         number("dataset_to_index", |row| row.first_frame + row.frames),
     ];
+    let videos = rows.first().map(|row| row.videos.keys());
+    for feature in videos.into_iter().flatten() {
+        let part = |row: &EpisodeRow| row.videos.get(feature).copied().unwrap_or_default();
+        let parts: Vec<_> = rows.iter().map(part).collect();
+        let named = |name: &str| format!("videos/{feature}/{name}");
+        let chunks = parts.iter().map(|part| part.place.chunk);
+        let files = parts.iter().map(|part| part.place.file);
+        all.push(columns::int64(&named("chunk_index"), chunks));
+        all.push(columns::int64(&named("file_index"), files));
+        for (name, time) in [("from_timestamp", 0), ("to_timestamp", 1)] {
+            let times = parts.iter().map(|part| part.times[time]);
+            all.push(columns::float64(&named(name), times));
+        }
+    }
     let features: Vec<_> = rows
         .first()
         .map_or(Vec::new(), |row| row.stats.keys().collect());

@@ -6,7 +6,10 @@ use serde_json::{Map, Value, json};
 use tabletop_storage::{Symlinks, read_regular_file};
 
 use super::place::{FILES_PER_CHUNK, MOST_FILE_BYTES};
-use crate::{episode::TrainingEpisode, error::ExportError};
+use crate::{
+    episode::{CameraTrack, EncodedVideo, TrainingEpisode},
+    error::ExportError,
+};
 
 const PATH: &str = "meta/info.json";
 const MOST_BYTES: u64 = 64 * 1024 * 1024;
@@ -113,6 +116,12 @@ impl Info {
 
     /// The text of the file.
     pub fn write(&self) -> Vec<u8> {
+        let is_video = |feature: &Value| feature["dtype"] == "video";
+        let video_path = self
+            .features
+            .values()
+            .any(is_video)
+            .then_some("videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4");
         let defaults = json!({
             "codebase_version": "v3.0",
             "fps": self.fps,
@@ -124,7 +133,7 @@ impl Info {
             "data_files_size_in_mb": MOST_FILE_BYTES / 1_000_000,
             "video_files_size_in_mb": 200,
             "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
-            "video_path": null,
+            "video_path": video_path,
             "robot_type": "tabletop",
             "splits": { "train": format!("0:{}", self.total_episodes) },
         });
@@ -160,14 +169,30 @@ fn features_of(episode: &TrainingEpisode, has_language: bool) -> Map<String, Val
             .images
             .first()
             .map_or([0, 0], |image| [image.height, image.width]);
-        features.insert(
-            feature_of_camera(&camera.name),
-            json!({
-                "dtype": "image",
-                "shape": [size[0], size[1], 3],
-                "names": ["height", "width", "channels"],
-            }),
-        );
+        let mut feature = json!({
+            "dtype": "image",
+            "shape": [size[0], size[1], 3],
+            "names": ["height", "width", "channels"],
+        });
+        if let Some(EncodedVideo { track, .. }) = &camera.video {
+            feature["dtype"] = json!("video");
+            feature["info"] = json!({
+                "video.height": track.height, "video.width": track.width, "video.codec": "av1",
+                "video.pix_fmt": "yuv420p", "video.is_depth_map": false, "video.fps": track.fps,
+                "video.channels": 3, "has_audio": false,
+            });
+        }
+        features.insert(feature_of_camera(&camera.name), feature);
+    }
+    for camera in &episode.cameras {
+        let size = camera
+            .images
+            .first()
+            .map(|image| [image.height, image.width]);
+        for (name, dtype) in raw_features(camera) {
+            let feature = json!({ "dtype": dtype, "shape": size, "names": ["height", "width"] });
+            features.insert(name, feature);
+        }
     }
     for name in LANGUAGE.into_iter().filter(|_| has_language) {
         let language = json!({ "dtype": "language", "shape": [1], "names": null });
@@ -189,6 +214,23 @@ fn features_of(episode: &TrainingEpisode, has_language: bool) -> Map<String, Val
 /// The feature of a camera's pictures.
 pub(super) fn feature_of_camera(camera: &str) -> String {
     format!("observation.images.{camera}")
+}
+
+/// The features of a camera's pixels besides their colours, each with the type of its numbers.
+fn raw_features(camera: &CameraTrack) -> Vec<(String, &'static str)> {
+    let depth = (!camera.depths.is_empty()).then(|| (feature_of_depth(&camera.name), "float32"));
+    let ids = (!camera.ids.is_empty()).then(|| (feature_of_ids(&camera.name), "int32"));
+    depth.into_iter().chain(ids).collect()
+}
+
+/// The feature of a camera's distances.
+pub(super) fn feature_of_depth(camera: &str) -> String {
+    format!("observation.depth.{camera}")
+}
+
+/// The feature of the things that a camera's pixels show.
+pub(super) fn feature_of_ids(camera: &str) -> String {
+    format!("observation.ids.{camera}")
 }
 
 /// A feature in a few words.

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 /// Size from which on a file gets no more episodes, in bytes.
 pub(super) const MOST_FILE_BYTES: usize = 100_000_000;
 
+/// Size from which on a video gets no more episodes, in bytes.
+pub(super) const MOST_VIDEO_BYTES: u64 = 200_000_000;
+
 /// Number of files in a folder.
 pub(super) const FILES_PER_CHUNK: usize = 1000;
 
@@ -24,15 +27,15 @@ impl DataPlace {
         }
     }
 
-    /// Its path in the dataset.
-    pub fn path(self, kind: &str) -> PathBuf {
+    /// Its path in the dataset, of a kind such as `data` and with this extension.
+    pub fn path(self, kind: &str, extension: &str) -> PathBuf {
         let Self { chunk, file } = self;
-        format!("{kind}/chunk-{chunk:03}/file-{file:03}.parquet").into()
+        format!("{kind}/chunk-{chunk:03}/file-{file:03}.{extension}").into()
     }
 }
 
-/// Number of files that a dataset has.
-pub(super) fn count(folder: &Path) -> usize {
-    let is_there = |number: &usize| folder.join(DataPlace::of(*number).path("data")).exists();
-    (0..).take_while(is_there).count()
+/// Number of files of a kind that a dataset has.
+pub(super) fn count(folder: &Path, kind: &str, extension: &str) -> usize {
+    let path = |number| folder.join(DataPlace::of(number).path(kind, extension));
+    (0..).take_while(|number| path(*number).exists()).count()
 }

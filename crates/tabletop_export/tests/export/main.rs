@@ -5,3 +5,5 @@ mod demonstration;
 mod hdf5;
 mod lerobot;
 mod mcap;
+mod pictures;
+mod rlds;

@@ -1,0 +1,39 @@
+//! Cameras that film.
+
+use tabletop_geometry::Pose;
+
+/// A camera that films a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmCamera {
+    /// Its name.
+    pub name: String,
+    /// Its place.
+    pub viewpoint: Viewpoint,
+    /// Columns and rows of its pictures; `None` for those with which it was recorded.
+    pub size: Option<[u32; 2]>,
+    /// The angle between the lower and the upper edge, in rad; `None` for its own, which is π/3 for a camera that stands somewhere.
+    pub vertical_fov: Option<f32>,
+}
+
+/// The place of a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Viewpoint {
+    /// The robot's head.
+    Head,
+    /// The robot's hand: the name of its camera, with or without `_camera` at its end.
+    Hand(String),
+    /// A pose in the table's frame, in units. The camera looks along its own -Z, with its Y up.
+    Standing(Pose),
+}
+
+impl FilmCamera {
+    /// The head camera, with pictures of this size.
+    pub fn head(width: u32, height: u32) -> Self {
+        Self {
+            name: "head".into(),
+            viewpoint: Viewpoint::Head,
+            size: Some([width, height]),
+            vertical_fov: None,
+        }
+    }
+}

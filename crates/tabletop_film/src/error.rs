@@ -1,0 +1,39 @@
+//! Errors of films.
+
+use tabletop_recorder::RecorderError;
+use tabletop_replay::ReplayError;
+use thiserror::Error;
+
+/// The error of a film.
+#[derive(Debug, Error)]
+pub enum FilmError {
+    /// The recording cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecorderError),
+    /// The recording cannot be simulated again.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// The robot has no such hand camera.
+    #[error("the robot has no camera {name}; expected head{}", .known.iter().map(|name| format!(", {name}")).collect::<String>())]
+    NoCamera {
+        /// Its name.
+        name: String,
+        /// The hand cameras that it has.
+        known: Vec<String>,
+    },
+    /// The format has no pictures of this size.
+    #[error("{format} cannot have pictures of {width}x{height}; {expected}")]
+    Size {
+        /// The format.
+        format: &'static str,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The sizes that it can have.
+        expected: &'static str,
+    },
+    /// The pictures cannot be drawn or encoded.
+    #[error("the pictures cannot be made: {0}")]
+    Failed(String),
+}

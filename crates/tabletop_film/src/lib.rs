@@ -1,0 +1,34 @@
+//! Recordings on film: the pictures of any camera at any rate, and videos, animations and contact sheets of them.
+//!
+//! [`Footage`] simulates a recording again and draws what its cameras see, to the bit as it was recorded where camera and size are the same.
+//! A [`Film`] is footage in the order and at the pace in which it is shown, with captions from the task's sentences:
+//!
+//! ```no_run
+//! use tabletop_film::{Film, FilmCamera, FilmFormat};
+//! use tabletop_replay::Replay;
+//!
+//! let replay = Replay::read("demo")?;
+//! let film = Film { has_captions: true, ..Film::of(FilmCamera::head(640, 480)) };
+//! let bytes = film.develop(&replay, FilmFormat::Mp4, |_done, _all| {})?;
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
+
+mod animation;
+mod camera;
+mod canvas;
+mod contact_sheet;
+mod error;
+mod film;
+mod footage;
+mod mp4;
+mod pace;
+mod video;
+
+pub use camera::{FilmCamera, Viewpoint};
+pub use canvas::Canvas;
+pub use error::FilmError;
+pub use film::{Film, FilmFormat};
+pub use footage::{Footage, Shot, Thing};
+pub use mp4::Mp4Writer;
+pub use pace::Pace;
+pub use video::{VideoEncoder, VideoPacket, VideoTrack};
