@@ -58,7 +58,6 @@ fn ids_of_strangers_become_no_elements() {
     let demo = demo.to_str().unwrap();
     let output = tabletop(&[
         "run",
-        "--setup",
         setup.to_str().unwrap(),
         "--seconds",
         "1",

@@ -16,8 +16,8 @@ use crate::{
 /// Every so many demonstrations, one is for validation.
 const VALIDATION: usize = 10;
 
-/// The speed of a hand that an action of 1 stands for, in units/s.
-const FASTEST: f64 = 40.0;
+/// The speed of a hand that an action of 1 stands for, in units/s: a free hand that crosses the table in 0.15 s.
+const FASTEST: f64 = 160.0;
 
 /// The opening of a gripper that an action of 1 stands for, in units.
 const WIDEST: f64 = 2.0;

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
 
 use serde_json::json;
 use tabletop_export::{FrameVectors, Image, ObjectTrack};
-use tabletop_geometry::Pose;
+use tabletop_geometry::{Pose, Rgb};
 
 use crate::{
     chapter::Chapter,
@@ -62,7 +62,7 @@ fn page(title: &str, body: &str, data: Option<&str>) -> String {
 
 fn header(chapter: &Chapter) -> String {
     let what = match chapter.episode.task.as_str() {
-        "" => "Nothing is moved for good.",
+        "" => "The hands move nothing for good.",
         task => task,
     };
     let who = if chapter.has_robot() {
@@ -106,11 +106,11 @@ fn player(chapter: &Chapter) -> String {
          <p id=\"part\" aria-live=\"polite\"></p>\n\
          <input id=\"slider\" type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" aria-label=\"Frame\">\n\
          <div class=\"buttons\">\n\
-         <button id=\"first\" type=\"button\" title=\"To the beginning (Home)\">⏮</button>\n\
+         <button id=\"first\" type=\"button\" title=\"To the beginning (Home)\">|◀</button>\n\
          <button id=\"back\" type=\"button\" title=\"A frame back (←)\">◀</button>\n\
-         <button id=\"play\" type=\"button\" title=\"Play or pause (Space)\">▶</button>\n\
-         <button id=\"on\" type=\"button\" title=\"A frame on (→)\">▶▏</button>\n\
-         <button id=\"last\" type=\"button\" title=\"To the end (End)\">⏭</button>\n\
+         <button id=\"play\" type=\"button\" title=\"Play or pause (Space)\">Play</button>\n\
+         <button id=\"on\" type=\"button\" title=\"A frame on (→)\">▶</button>\n\
+         <button id=\"last\" type=\"button\" title=\"To the end (End)\">▶|</button>\n\
          <output id=\"time\"></output>\n\
          <label>Speed <select id=\"speed\"><option value=\"0.25\">¼×</option><option value=\"0.5\">½×</option><option value=\"1\" selected>1×</option><option value=\"2\">2×</option><option value=\"4\">4×</option></select></label>\n\
          <label{hidden}>Camera <select id=\"camera\">{choices}</select></label>\n\
@@ -184,6 +184,7 @@ fn plots(chapter: &Chapter) -> String {
         .take(LINES)
         .collect();
     if !moved.is_empty() {
+        let colors = line_colors(&moved);
         let axes: [(&str, fn(Pose) -> f32); 3] = [
             ("X: to the right", |pose| pose.location.x),
             ("Y: away from the robot", |pose| pose.location.y),
@@ -192,7 +193,7 @@ fn plots(chapter: &Chapter) -> String {
         for (title, of) in axes {
             let line = |(number, object): (usize, &&ObjectTrack)| PlotLine {
                 name: object.spec.id.clone(),
-                color: COLORS[number % COLORS.len()].into(),
+                color: colors[number].clone(),
                 values: object.poses.iter().map(|pose| pose.map(of)).collect(),
             };
             plots.push(Plot {
@@ -224,7 +225,15 @@ fn joint_plots(joints: &FrameVectors) -> Vec<Plot> {
         };
         groups.entry(group).or_default().push(column);
     }
-    let plots = groups.into_iter().map(|(group, columns)| Plot {
+    let is_moved = |column: &usize| {
+        let mut values = joints.frames().map(|frame| frame[*column]);
+        let first = values.next();
+        values.any(|value| Some(value) != first)
+    };
+    let moved = groups
+        .into_iter()
+        .filter(|(_, columns)| columns.iter().any(is_moved));
+    let plots = moved.map(|(group, columns)| Plot {
         title: match group {
             "Grippers" => "Openings of the grippers".into(),
             limb => format!("Joints: {limb}"),
@@ -248,6 +257,22 @@ fn joint_plots(joints: &FrameVectors) -> Vec<Plot> {
     plots.collect()
 }
 
+/// A colour for each object's lines: its own, or another one if it can hardly be seen on paper or two have the same.
+fn line_colors(objects: &[&ObjectTrack]) -> Vec<String> {
+    let mut colors: Vec<String> = Vec::new();
+    for (number, object) in objects.iter().enumerate() {
+        let own = object.spec.shape.drawn().first().map(|solid| solid.color);
+        let is_seen = |color: &Rgb| {
+            let sum: u32 = color.to_bytes().into_iter().map(u32::from).sum();
+            (60..600).contains(&sum)
+        };
+        let own = own.filter(is_seen).map(|color| color.to_string());
+        let own = own.filter(|color| !colors.contains(color));
+        colors.push(own.unwrap_or_else(|| COLORS[number % COLORS.len()].into()));
+    }
+    colors
+}
+
 /// The size of the box in which an object has been, in units.
 fn span(object: &ObjectTrack) -> f32 {
     let mut places = object.poses.iter().flatten().map(|pose| pose.location);
@@ -265,7 +290,11 @@ fn objects(chapter: &Chapter) -> String {
         pose.map_or_else(
             || "–".to_owned(),
             |Pose { location, .. }| {
-                format!("{:.2}, {:.2}, {:.2}", location.x, location.y, location.z)
+                // No -0.
+                let [x, y, z] = location
+                    .to_array()
+                    .map(|it| (it * 100.0).round() / 100.0 + 0.0);
+                format!("{x:.2}, {y:.2}, {z:.2}")
             },
         )
     };

@@ -39,7 +39,7 @@
   const pause = () => {
     clearTimeout(timer);
     timer = null;
-    byId("play").textContent = "▶";
+    byId("play").textContent = "Play";
   };
 
   const next = () => {
@@ -54,7 +54,7 @@
   const playOrPause = () => {
     if (timer !== null) return pause();
     if (frame >= last) show(0);
-    byId("play").textContent = "⏸";
+    byId("play").textContent = "Pause";
     next();
   };
 
