@@ -1,7 +1,9 @@
 //! Files that the user opens and saves while the window is open.
 
 mod dialog;
+mod film;
 mod kind;
+mod picture;
 mod recent;
 mod reload;
 
@@ -13,6 +15,7 @@ use tabletop_gui::{FileRequest, Files, Notices, Purpose, TaskFile, Tone};
 
 use self::{
     dialog::Dialog,
+    film::Filming,
     kind::FileKind,
     recent::remember,
     reload::{Watch, keep_setting},
@@ -25,6 +28,7 @@ use crate::{
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins((recent::plugin, reload::plugin))
         .init_resource::<Dialog>()
+        .init_resource::<Filming>()
         .init_resource::<ShippedFiles>()
         .init_resource::<AllowedFolders>()
         .add_systems(Startup, |mut requests: MessageWriter<FileRequest>| {
@@ -32,7 +36,13 @@ pub(super) fn plugin(app: &mut App) {
         })
         .add_systems(
             Update,
-            (take_dropped, dialog::take_answer, carry_out).chain(),
+            (
+                take_dropped,
+                dialog::take_answer,
+                carry_out,
+                film::take_result,
+            )
+                .chain(),
         );
 }
 
@@ -54,6 +64,10 @@ fn carry_out(world: &mut World, reader: &mut SystemState<MessageReader<FileReque
             FileRequest::ListTasks => list_tasks(world),
             FileRequest::AskToOpen => dialog::ask(world, Purpose::Open),
             FileRequest::AskToSave => dialog::ask(world, Purpose::Save),
+            FileRequest::AskForVideo => dialog::ask(world, Purpose::Video),
+            FileRequest::AskForPicture(size) => dialog::ask(world, Purpose::Picture(size)),
+            FileRequest::SaveVideo(path) => film::begin(world, path),
+            FileRequest::SavePicture(path, size) => picture::save(world, &path, size),
             FileRequest::Open(path) => open(world, &path),
             FileRequest::Save(path) => save(world, &path),
             FileRequest::Reload(reloads) => keep_setting(world, reloads),

@@ -34,10 +34,18 @@ pub enum FileRequest {
     AskToOpen,
     /// Ask for a task file, and save the present state as it.
     AskToSave,
+    /// Ask for the file of a video of the recording that the Timeline shows, and save it.
+    AskForVideo,
+    /// Ask for the file of a picture of the view, of so many columns and rows, and save it.
+    AskForPicture([u32; 2]),
     /// Open a task file or a recording, which may be named by its folder or a file in it.
     Open(PathBuf),
     /// Save the present state as a task file. If there is a file, the user has agreed to its end.
     Save(PathBuf),
+    /// Save a video of the recording that the Timeline shows; the end of the name gives the format.
+    SaveVideo(PathBuf),
+    /// Save a picture of the view, of so many columns and rows.
+    SavePicture(PathBuf, [u32; 2]),
     /// Load the task file on the table anew, or not, when it changes on the disk.
     Reload(bool),
 }

@@ -63,11 +63,8 @@ pub(super) fn take_answer(
     let (purpose, lasted) = (open.purpose, open.since.elapsed());
     dialog.0 = None;
     match (answer, purpose) {
-        (Some(path), Purpose::Open) => {
-            requests.write(FileRequest::Open(path));
-        }
-        (Some(path), Purpose::Save) => {
-            requests.write(FileRequest::Save(path));
+        (Some(path), purpose) => {
+            requests.write(purpose.request(path));
         }
         (None, _) if lasted < SHORTEST => browser.ask(purpose, &first_folder()),
         (None, _) => {}
@@ -77,20 +74,24 @@ pub(super) fn take_answer(
 fn show(purpose: Purpose) -> impl Future<Output = Option<PathBuf>> + Send + 'static {
     let dialog = AsyncFileDialog::new().set_directory(first_folder());
     async move {
+        let dialog = dialog.set_title(purpose.title());
         let chosen = match purpose {
             Purpose::Open => {
-                let dialog = dialog.set_title("Open a task file or a recording");
                 let dialog = dialog
                     .add_filter("Task files, recordings", &["xml", "jsonl"])
                     .add_filter("All files", &["*"]);
                 dialog.pick_file().await
             }
-            Purpose::Save => {
-                let dialog = dialog.set_title("Save as a task file");
-                let dialog = dialog
-                    .add_filter("Task files", &["xml"])
-                    .set_file_name("task.xml");
-                dialog.save_file().await
+            Purpose::Save | Purpose::Video | Purpose::Picture(_) => {
+                let (kind, extensions): (_, &[_]) = match purpose {
+                    Purpose::Video => {
+                        ("Videos, animations, contact sheets", &["mp4", "gif", "png"])
+                    }
+                    Purpose::Picture(_) => ("Pictures", &["png"]),
+                    Purpose::Open | Purpose::Save => ("Task files", &["xml"]),
+                };
+                let dialog = dialog.add_filter(kind, extensions);
+                dialog.set_file_name(purpose.file_name()).save_file().await
             }
         };
         chosen.map(|file: FileHandle| file.path().to_owned())

@@ -27,6 +27,42 @@ pub enum Purpose {
     Open,
     /// Saving a task file.
     Save,
+    /// Saving a video of a recording.
+    Video,
+    /// Saving a picture of the view, of so many columns and rows.
+    Picture([u32; 2]),
+}
+
+impl Purpose {
+    /// The name that is proposed.
+    pub const fn file_name(self) -> &'static str {
+        match self {
+            Self::Open => "",
+            Self::Save => "task.xml",
+            Self::Video => "demo.mp4",
+            Self::Picture(_) => "view.png",
+        }
+    }
+
+    /// The request about the file that the user has chosen.
+    pub fn request(self, path: PathBuf) -> FileRequest {
+        match self {
+            Self::Open => FileRequest::Open(path),
+            Self::Save => FileRequest::Save(path),
+            Self::Video => FileRequest::SaveVideo(path),
+            Self::Picture(size) => FileRequest::SavePicture(path, size),
+        }
+    }
+
+    /// The title of a dialog.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Open => "Open a task file or a recording",
+            Self::Save => "Save as a task file",
+            Self::Video => "Save a video (.mp4, .gif) or a contact sheet (.png)",
+            Self::Picture(_) => "Save a picture of the view",
+        }
+    }
 }
 
 /// A window that shows a folder, in which the user chooses a file.
@@ -90,10 +126,7 @@ impl Browser {
         self.search = Some(FileSearch {
             purpose,
             folder: FolderContent::read(folder),
-            name: match purpose {
-                Purpose::Open => String::new(),
-                Purpose::Save => "task.xml".into(),
-            },
+            name: purpose.file_name().into(),
             replaces: None,
         });
     }
@@ -101,21 +134,18 @@ impl Browser {
     /// Carries out a request of the user, and returns one about a file.
     fn carry_out(&mut self, request: Request) -> Option<FileRequest> {
         let search = self.search.as_mut()?;
-        match (request, search.purpose) {
-            (Request::Enter(folder), _) => search.folder = FolderContent::read(&folder),
-            (Request::Keep, _) => search.replaces = None,
-            (Request::Choose(path), Purpose::Save) if path.exists() => {
+        let purpose = search.purpose;
+        match request {
+            Request::Enter(folder) => search.folder = FolderContent::read(&folder),
+            Request::Keep => search.replaces = None,
+            Request::Choose(path) if purpose != Purpose::Open && path.exists() => {
                 search.replaces = Some(path);
             }
-            (Request::Choose(path), Purpose::Open) => {
+            Request::Choose(path) | Request::Replace(path) => {
                 self.search = None;
-                return Some(FileRequest::Open(path));
+                return Some(purpose.request(path));
             }
-            (Request::Choose(path) | Request::Replace(path), _) => {
-                self.search = None;
-                return Some(FileRequest::Save(path));
-            }
-            (Request::Cancel, _) => self.search = None,
+            Request::Cancel => self.search = None,
         }
         None
     }
@@ -141,10 +171,9 @@ fn show_browser(
 
 fn show(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
     ui.set_width(WIDTH);
-    let (title, verb) = match search.purpose {
-        Purpose::Open => ("Open a task file or a recording", "Open"),
-        Purpose::Save => ("Save as a task file", "Save"),
-    };
+    let is_opening = search.purpose == Purpose::Open;
+    let title = search.purpose.title();
+    let verb = if is_opening { "Open" } else { "Save" };
     ui.heading(title);
     if let Some(path) = &search.replaces {
         return ask_to_replace(ui, path);
@@ -153,7 +182,7 @@ fn show(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
     ui.separator();
     let chosen = entries(ui, search);
     ui.separator();
-    if search.purpose == Purpose::Save {
+    if !is_opening {
         ui.horizontal(|ui| {
             let label = ui.label("File name:");
             let field = TextEdit::singleline(&mut search.name).desired_width(f32::INFINITY);
@@ -217,13 +246,18 @@ fn entries(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
                 EntryKind::Task => name.clone(),
             };
             let entry = ui.selectable_label(search.name == *name, text);
-            match (kind, search.purpose) {
-                (EntryKind::Folder, _) | (EntryKind::Recording, Purpose::Save) => {
+            let is_entered = match kind {
+                EntryKind::Folder => true,
+                EntryKind::Recording => search.purpose != Purpose::Open,
+                EntryKind::Task => false,
+            };
+            match is_entered {
+                true => {
                     if entry.clicked() {
                         request = Some(Request::Enter(search.folder.path.join(name)));
                     }
                 }
-                (EntryKind::Task, _) | (EntryKind::Recording, Purpose::Open) => {
+                false => {
                     if entry.clicked() {
                         search.name.clone_from(name);
                     }
@@ -241,8 +275,9 @@ impl FileSearch {
     /// Takes the selected or typed name.
     fn choose(&self) -> Request {
         let mut path = self.folder.path.join(self.name.trim());
-        if self.purpose == Purpose::Save && path.extension().is_none() {
-            path.set_extension("xml");
+        let proposed = Path::new(self.purpose.file_name()).extension();
+        if let Some(extension) = proposed.filter(|_| path.extension().is_none()) {
+            path.set_extension(extension);
         }
         Request::Choose(path)
     }

@@ -11,6 +11,7 @@ use bevy_egui::{
 use tabletop_user::{Action, CameraMotion, CameraView, Keymap, Steering};
 
 use crate::{
+    files::FileRequest,
     panels::{Panel, Panels},
     widgets::style::ACCENT,
 };
@@ -26,6 +27,9 @@ const TURN: f32 = 2.0;
 /// Speed of the buttons in units/s.
 const CLIMB: f32 = 9.0;
 
+/// Largest number of a picture's columns, and of its rows.
+const LARGEST: u32 = 4096;
+
 /// Radius of the dot where a drag began, in points.
 const DOT: f32 = 4.0;
 
@@ -36,10 +40,23 @@ struct Request {
     steering: Steering,
     /// The button that was pressed.
     view: Option<CameraView>,
+    /// A picture of so many columns and rows is to be saved.
+    picture: Option<[u32; 2]>,
+}
+
+/// The size of the next picture, in columns and rows.
+#[derive(Clone, Copy, Debug)]
+struct PictureSize([u32; 2]);
+
+impl Default for PictureSize {
+    fn default() -> Self {
+        Self([1600, 1200])
+    }
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(EguiPrimaryContextPass, show_panel);
+    app.add_message::<FileRequest>()
+        .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
 fn show_panel(
@@ -48,26 +65,50 @@ fn show_panel(
     keymap: Res<Keymap>,
     mut steering: ResMut<Steering>,
     mut motions: MessageWriter<CameraMotion>,
+    mut files: MessageWriter<FileRequest>,
+    mut size: Local<PictureSize>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    let shown = Panel::Camera.show(context, &mut panels, |ui| show(ui, &keymap));
+    let shown = Panel::Camera.show(context, &mut panels, |ui| show(ui, &keymap, &mut size));
     let request = shown.unwrap_or_default();
     steering.set_if_neq(request.steering);
     if let Some(view) = request.view {
         motions.write(CameraMotion::Look(view));
     }
+    if let Some(size) = request.picture {
+        files.write(FileRequest::AskForPicture(size));
+    }
 }
 
-fn show(ui: &mut Ui, keymap: &Keymap) -> Request {
+fn show(ui: &mut Ui, keymap: &Keymap, size: &mut PictureSize) -> Request {
     let steering = ui.horizontal(|ui| steering(ui, keymap)).inner;
     if steering != Steering::default() {
         // It goes on moving while nothing else changes.
         ui.ctx().request_repaint();
     }
     let view = ui.horizontal_wrapped(|ui| views(ui, keymap)).inner;
-    Request { steering, view }
+    let picture = ui.horizontal(|ui| picture(ui, size)).inner;
+    Request {
+        steering,
+        view,
+        picture,
+    }
+}
+
+/// The button that saves a picture, and its size.
+fn picture(ui: &mut Ui, PictureSize(size): &mut PictureSize) -> Option<[u32; 2]> {
+    let button = ui.button("Save picture…");
+    let is_asked = button
+        .on_hover_text("Save the view without panels")
+        .clicked();
+    for (side, name) in size.iter_mut().zip(["Columns", "Rows"]) {
+        let field = ui.add(egui::DragValue::new(side).range(1..=LARGEST));
+        field.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, true, name));
+        field.on_hover_text(format!("{name} of the picture"));
+    }
+    is_asked.then_some(*size)
 }
 
 fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
@@ -212,7 +253,9 @@ mod tests {
 
     fn harness() -> Harness<'static, Request> {
         let keymap = Keymap::default();
-        let frame = move |ui: &mut Ui, request: &mut Request| *request = show(ui, &keymap);
+        let frame = move |ui: &mut Ui, request: &mut Request| {
+            *request = show(ui, &keymap, &mut PictureSize::default())
+        };
         let mut harness = Harness::new_ui_state(frame, Request::default());
         harness.set_size(vec2(360.0, 240.0));
         harness.run();
@@ -228,6 +271,14 @@ mod tests {
         harness.step();
         harness.step();
         harness.state().steering
+    }
+
+    #[test]
+    fn a_picture_of_the_view_is_asked_for_in_its_size() {
+        let mut harness = harness();
+        harness.get_by_label("Save picture…").click();
+        harness.step();
+        assert_eq!(harness.state().picture, Some([1600, 1200]));
     }
 
     #[test]

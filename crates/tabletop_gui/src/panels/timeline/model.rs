@@ -42,6 +42,7 @@ pub(crate) enum Request {
     Undo(usize),
     Redo,
     Open(PathBuf),
+    SaveVideo,
     Close,
     Task(TaskOrder),
 }

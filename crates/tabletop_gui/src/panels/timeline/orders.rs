@@ -8,11 +8,13 @@ use tabletop_core::{
 use tabletop_user::{Action, Imitating, KeySystems, Pace, SingleStep, TaskOrder, was_struck};
 
 use super::model::Request;
+use crate::files::FileRequest;
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<PendingUndos>()
         .init_resource::<Pace>()
         .add_message::<SingleStep>()
+        .add_message::<FileRequest>()
         .add_systems(
             FixedUpdate,
             undo_one
@@ -50,6 +52,7 @@ pub(super) struct Orders<'w> {
     steps: MessageWriter<'w, SingleStep>,
     playback: MessageWriter<'w, PlaybackOrder>,
     open: MessageWriter<'w, OpenRecording>,
+    files: MessageWriter<'w, FileRequest>,
     task: MessageWriter<'w, TaskOrder>,
     pace: ResMut<'w, Pace>,
     undos: ResMut<'w, PendingUndos>,
@@ -89,6 +92,9 @@ impl Orders<'_> {
             }
             Request::Open(folder) => {
                 self.open.write(OpenRecording(folder));
+            }
+            Request::SaveVideo => {
+                self.files.write(FileRequest::AskForVideo);
             }
             Request::Close => {
                 self.playback.write(PlaybackOrder::Close);
@@ -228,6 +234,10 @@ mod tests {
             [OpenRecording("demo".into())]
         );
         assert_eq!(sent::<SingleStep>(&mut app, Request::Step), [SingleStep]);
+        assert_eq!(
+            sent::<FileRequest>(&mut app, Request::SaveVideo),
+            [FileRequest::AskForVideo]
+        );
         let task = Request::Task(TaskOrder::PutBack);
         assert_eq!(sent::<TaskOrder>(&mut app, task), [TaskOrder::PutBack]);
         ask(&mut app, Request::SetPace(Pace::Double));

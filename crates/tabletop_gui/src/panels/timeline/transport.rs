@@ -164,6 +164,16 @@ fn recording(ui: &mut Ui, model: &Model) -> Vec<Request> {
             }
         }
     }
+    match timeline.stage {
+        TimelineStage::Absent | TimelineStage::Running => {}
+        TimelineStage::Finished | TimelineStage::Open => {
+            let video = ui.button("Save video");
+            let tooltip = "Save the recording, seen from here, as a video (.mp4, .gif) or a contact sheet (.png)";
+            if video.on_hover_text(tooltip).clicked() {
+                requests.push(Request::SaveVideo);
+            }
+        }
+    }
     requests
 }
 
