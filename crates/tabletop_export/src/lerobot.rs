@@ -18,6 +18,7 @@ mod episode_table;
 mod info;
 mod language;
 mod place;
+mod reader;
 mod stats;
 mod table;
 mod task_table;
@@ -44,6 +45,7 @@ use crate::{
     error::ExportError,
     format::DatasetFormat,
 };
+pub use self::{commit::PendingCommit, reader::LeRobotReader};
 
 /// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames, so that nothing is lost;
 /// those of cameras with a [video](crate::CameraTrack::video) are videos instead.
@@ -121,6 +123,14 @@ impl LeRobot {
             next_videos: BTreeMap::new(),
             _lock: lock,
         })
+    }
+
+    /// What an export that was cut off has left in a dataset, if it has.
+    ///
+    /// # Errors
+    /// The folder cannot be read, or its journal is none that an export writes.
+    pub fn pending(folder: &Path) -> Result<Option<PendingCommit>, ExportError> {
+        Commit::pending(folder, &Storage::default())
     }
 
     /// Leaves out the language columns, which LeRobot reads from version 0.6 on.

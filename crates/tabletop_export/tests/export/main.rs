@@ -7,3 +7,4 @@ mod lerobot;
 mod mcap;
 mod pictures;
 mod rlds;
+mod reading;
