@@ -15,6 +15,7 @@ mod faultless;
 mod film_camera;
 mod hand_cameras;
 mod imitate;
+mod import;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
@@ -79,6 +80,8 @@ enum Command {
     Video(video::VideoArgs),
     /// Make a page of one recording, or a table of many, that any browser shows
     Report(report::ReportArgs),
+    /// Turn a recording of the original program into one of this program, for all commands but replay
+    Import(import::ImportArgs),
     /// Check task files and report every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
@@ -143,6 +146,7 @@ pub fn main() -> ExitCode {
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Video(args)) => video::run(&args),
         Some(Command::Report(args)) => report::run(&args),
+        Some(Command::Import(args)) => import::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]

@@ -8,6 +8,7 @@ mod element_docs;
 mod explain;
 mod export;
 mod imitate;
+mod import;
 mod kept;
 #[cfg(feature = "window")]
 mod keys;

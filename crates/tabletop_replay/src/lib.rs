@@ -4,6 +4,7 @@ mod difference;
 mod error;
 mod playback;
 mod player;
+mod shown;
 mod verify;
 
 pub use difference::first_difference;
@@ -64,6 +65,9 @@ impl Replay {
         let path = folder.join("session.jsonl");
         let recording = RecordingReader::open(&folder)?;
         let header = recording.header();
+        if header.is_imported() {
+            return Err(ReplayError::Imported { folder });
+        }
         let fault = |name, problem| ReplayError::Settings {
             path: path.clone(),
             name,

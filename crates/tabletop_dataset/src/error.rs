@@ -1,0 +1,47 @@
+//! Errors of datasets.
+
+use std::{io, path::PathBuf};
+
+use tabletop_recorder::RecorderError;
+
+/// The error of a dataset, or of a recording that is to be one of it.
+#[derive(Debug, thiserror::Error)]
+pub enum DatasetError {
+    /// A recording cannot be read or written.
+    #[error(transparent)]
+    Recording(#[from] RecorderError),
+    /// A folder holds something else.
+    #[error("{}: {problem}", .path.display())]
+    Unfit {
+        /// The folder or file.
+        path: PathBuf,
+        /// What is wrong with it, and what was expected.
+        problem: String,
+    },
+    /// A file cannot be read or written.
+    #[error("{}: {source}", .path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+}
+
+impl DatasetError {
+    /// Whether the user's input is at fault, and not the disk.
+    pub const fn is_of_input(&self) -> bool {
+        match self {
+            Self::Recording(error) => error.is_of_input(),
+            Self::Unfit { .. } => true,
+            Self::Io { .. } => false,
+        }
+    }
+
+    pub(crate) fn unfit(path: impl Into<PathBuf>, problem: impl ToString) -> Self {
+        Self::Unfit {
+            path: path.into(),
+            problem: problem.to_string(),
+        }
+    }
+}
