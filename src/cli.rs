@@ -5,6 +5,7 @@ mod arguments;
 mod check;
 mod completions;
 mod cut_off;
+mod dataset;
 #[cfg(feature = "window")]
 mod display;
 mod duration;
@@ -21,6 +22,7 @@ mod init;
 mod keys;
 mod man;
 mod multiply;
+mod number_run;
 mod output;
 mod picture_size;
 mod progress;
@@ -80,6 +82,8 @@ enum Command {
     Video(video::VideoArgs),
     /// Make a page of one recording, or a table of many, that any browser shows
     Report(report::ReportArgs),
+    /// Describe, check, repair, merge, split and trim folders of recordings and LeRobot datasets
+    Dataset(dataset::DatasetArgs),
     /// Turn a recording of the original program into one of this program, for all commands but replay
     Import(import::ImportArgs),
     /// Check task files and report every fault with its place
@@ -146,6 +150,7 @@ pub fn main() -> ExitCode {
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Video(args)) => video::run(&args),
         Some(Command::Report(args)) => report::run(&args),
+        Some(Command::Dataset(args)) => dataset::run(&args),
         Some(Command::Import(args)) => import::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),

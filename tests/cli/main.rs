@@ -4,6 +4,7 @@
 mod allowed_paths;
 mod anywhere;
 mod cut_off;
+mod dataset;
 mod element_docs;
 mod explain;
 mod export;

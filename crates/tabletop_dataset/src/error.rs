@@ -2,7 +2,9 @@
 
 use std::{io, path::PathBuf};
 
+use tabletop_export::ExportError;
 use tabletop_recorder::RecorderError;
+use tabletop_replay::ReplayError;
 
 /// The error of a dataset, or of a recording that is to be one of it.
 #[derive(Debug, thiserror::Error)]
@@ -10,6 +12,12 @@ pub enum DatasetError {
     /// A recording cannot be read or written.
     #[error(transparent)]
     Recording(#[from] RecorderError),
+    /// A dataset cannot be read or written.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// A recording cannot be simulated again.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
     /// A folder holds something else.
     #[error("{}: {problem}", .path.display())]
     Unfit {
@@ -30,12 +38,19 @@ pub enum DatasetError {
 
 impl DatasetError {
     /// Whether the user's input is at fault, and not the disk.
-    pub const fn is_of_input(&self) -> bool {
+    pub fn is_of_input(&self) -> bool {
         match self {
             Self::Recording(error) => error.is_of_input(),
+            Self::Export(error) => error.is_of_input(),
+            Self::Replay(error) => !matches!(error, ReplayError::Record(_)),
             Self::Unfit { .. } => true,
             Self::Io { .. } => false,
         }
+    }
+
+    pub(crate) fn io(path: impl Into<PathBuf>) -> impl FnOnce(io::Error) -> Self {
+        let path = path.into();
+        |source| Self::Io { path, source }
     }
 
     pub(crate) fn unfit(path: impl Into<PathBuf>, problem: impl ToString) -> Self {

@@ -162,6 +162,21 @@ impl Replay {
         }
     }
 
+    /// Its session: with an end added, if it was cut off.
+    pub const fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The same with other commands, or with another beginning and end.
+    #[must_use]
+    pub fn with_session(&self, session: Session) -> Self {
+        Self {
+            begin: session.header.begin_tick.map_or(self.begin, SimTick),
+            session,
+            ..self.clone()
+        }
+    }
+
     /// Version of the program that made the recording.
     pub fn program(&self) -> &str {
         &self.session.header.program
