@@ -9,6 +9,7 @@ mod dataset;
 #[cfg(feature = "window")]
 mod display;
 mod duration;
+mod edit;
 mod explain;
 mod export;
 mod failure;
@@ -84,6 +85,8 @@ enum Command {
     Report(report::ReportArgs),
     /// Describe, check, repair, merge, split and trim folders of recordings and LeRobot datasets
     Dataset(dataset::DatasetArgs),
+    /// Make a recording of another's segments: left out, in another order, faster or slower
+    Edit(edit::EditArgs),
     /// Turn a recording of the original program into one of this program, for all commands but replay
     Import(import::ImportArgs),
     /// Check task files and report every fault with its place
@@ -151,6 +154,7 @@ pub fn main() -> ExitCode {
         Some(Command::Video(args)) => video::run(&args),
         Some(Command::Report(args)) => report::run(&args),
         Some(Command::Dataset(args)) => dataset::run(&args),
+        Some(Command::Edit(args)) => edit::run(&args),
         Some(Command::Import(args)) => import::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),

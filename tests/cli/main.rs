@@ -5,6 +5,7 @@ mod allowed_paths;
 mod anywhere;
 mod cut_off;
 mod dataset;
+mod edit;
 mod element_docs;
 mod explain;
 mod export;

@@ -1,6 +1,7 @@
 //! Recordings, simulated again: replays, their verification, and any moment of a recording.
 
 mod difference;
+mod edit;
 mod error;
 mod playback;
 mod player;
@@ -8,6 +9,7 @@ mod shown;
 mod verify;
 
 pub use difference::first_difference;
+pub use edit::{EditError, SegmentEdit};
 pub use error::ReplayError;
 pub use playback::PlaybackPlugin;
 pub use player::Player;
