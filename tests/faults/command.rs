@@ -92,8 +92,7 @@ const SCENARIO: &str = r#"(setup: "shipped:tablesetup/blocks.xml", steps: [
 ])"#;
 
 /// A recording of the original program.
-const ORIGINAL: &str =
-    "0,create,a,shape,block,xspan,1.0,zspan,1.0,yspan,1.0,color,#00ff00,mass,1.0\n0,move,a,0,0,0.5,0,0,0\n2,move,a,1,0,0.5,0,0,0\n";
+const ORIGINAL: &str = "0,create,a,shape,block,xspan,1.0,zspan,1.0,yspan,1.0,color,#00ff00,mass,1.0\n0,move,a,0,0,0.5,0,0,0\n2,move,a,1,0,0.5,0,0,0\n";
 
 /// The place of the commands, with a folder that each of them begins with.
 pub struct Commands {
