@@ -10,8 +10,8 @@ use tabletop::{
 };
 
 use super::{
-    Failure, allowed_paths::AllowedPaths, number_run::run_of, range::NumberRange,
-    recorded::say_moved_aside, terminal::show_warnings,
+    Failure, allowed_paths::AllowedPaths, cut_off::say_if_cut_off, number_run::run_of,
+    range::NumberRange, recorded::say_moved_aside, terminal::show_warnings,
 };
 
 /// Numbers of segments.
@@ -55,6 +55,7 @@ pub(super) fn run(args: &EditArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let replay = Replay::read_allowing(&args.recording, &args.allowed.folders);
     let replay = replay.map_err(Failure::input)?;
+    say_if_cut_off(replay.recording(), "edited");
     let mut edits = Vec::new();
     let dropped = args.drop.iter();
     edits.extend(dropped.map(|numbers| SegmentEdit::Drop(numbers.0.clone())));

@@ -166,6 +166,10 @@ fn sliced(mut episode: TrainingEpisode, from: usize, until: usize) -> TrainingEp
     }
     for camera in &mut episode.cameras {
         camera.images = camera.images[from..until].to_vec();
+        camera.depths = between_frames(&camera.depths, from, until);
+        camera.ids = between_frames(&camera.ids, from, until);
+        // Its frames depend on each other.
+        camera.video = None;
     }
     for object in &mut episode.objects {
         object.poses = object.poses[from..until].to_vec();
@@ -174,4 +178,9 @@ fn sliced(mut episode: TrainingEpisode, from: usize, until: usize) -> TrainingEp
         part.frame = part.frame.saturating_sub(from).min(until - from - 1);
     }
     episode
+}
+
+/// The values of these frames, if there are any.
+fn between_frames<T: Clone>(values: &[T], from: usize, until: usize) -> Vec<T> {
+    values.get(from..until).unwrap_or_default().to_vec()
 }

@@ -40,12 +40,12 @@ use self::{
     stats::FeatureStats,
     video_file::VideoFile,
 };
+pub use self::{commit::PendingCommit, reader::LeRobotReader};
 use crate::{
     episode::{EncodedVideo, TrainingEpisode},
     error::ExportError,
     format::DatasetFormat,
 };
-pub use self::{commit::PendingCommit, reader::LeRobotReader};
 
 /// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames, so that nothing is lost;
 /// those of cameras with a [video](crate::CameraTrack::video) are videos instead.

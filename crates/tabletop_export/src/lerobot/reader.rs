@@ -141,7 +141,9 @@ impl LeRobotReader {
     ) -> Result<(), E> {
         let names = self.names();
         for number in 0..self.files {
-            let path = self.folder.join(place::DataPlace::of(number).path("data", "parquet"));
+            let path = self
+                .folder
+                .join(place::DataPlace::of(number).path("data", "parquet"));
             let open = || {
                 let file = open_regular_file(&path, Symlinks::Followed);
                 let file = file.map_err(ExportError::io(&path))?;
@@ -311,7 +313,7 @@ fn rows_of<N: ArrowPrimitiveType>(
             let inner = match (values.as_fixed_size_list_opt(), values.as_list_opt::<i32>()) {
                 (Some(list), _) => {
                     let width = list.value_length() as usize;
-                    let first = list.value_offset(0) as usize;
+                    let first = list.value_offset_at(0);
                     list.values().slice(first, list.len() * width)
                 }
                 (None, Some(list)) => {

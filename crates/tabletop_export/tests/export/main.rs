@@ -6,5 +6,5 @@ mod hdf5;
 mod lerobot;
 mod mcap;
 mod pictures;
-mod rlds;
 mod reading;
+mod rlds;

@@ -145,6 +145,11 @@ pub(super) fn read_lines(
         .has_headers(false)
         .flexible(true)
         .quoting(commas == CommaStyle::Quoted)
+        .trim(match commas {
+            CommaStyle::Quoted => csv::Trim::None,
+            // Files that were edited by hand may have spaces.
+            CommaStyle::Escaped => csv::Trim::Fields,
+        })
         .from_reader(text.as_bytes());
     let records = reader.records().map(|record| match record {
         Ok(record) => {

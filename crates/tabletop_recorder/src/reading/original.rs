@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn lines_without_sense_are_left_out_and_told_with_their_places() {
         let text = "0,create,a,shape,block\n\
-            0,move,a,0,0,1,0,0,0\n\
+            0, move, a, 0, 0, 1, 0, 0, 0\n\
             what is this\n\
             4,move,b,1,0,1,0,0,0\n\
             5,move,a,NaN,0,1,0,0,0\n\
