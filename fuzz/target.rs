@@ -8,6 +8,7 @@ use std::{
 use bevy::math::DVec3;
 use tabletop::{
     core::LayoutFile,
+    dataset::import_recording,
     headless_app_with,
     kinematics::RobotModel,
     mesh::{read_obj, read_stl},
@@ -182,7 +183,8 @@ fn recording_with(files: &[(&str, &[u8])]) -> PathBuf {
     written(&[&RECORDING[..], files].concat())
 }
 
-/// Events of a recording of the original program, a blank line between two segments, of which the task is understood.
+/// Events of a recording of the original program, a blank line between two segments, of which the task is understood. It is imported, and
+/// what was imported reads back.
 fn events(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let segments = text.split("\n\n").enumerate();
@@ -190,7 +192,13 @@ fn events(bytes: &[u8]) {
         .map(|(number, text)| (format!("{number}.txt"), text.as_bytes()))
         .collect();
     let files: Vec<_> = named.iter().map(|(name, text)| (&**name, *text)).collect();
-    understand(&written(&files));
+    let folder = written(&files);
+    understand(&folder);
+    let imported = folder.with_extension("imported");
+    let _not_there = fs::remove_dir_all(&imported);
+    if import_recording(&folder, &imported, None).is_ok() {
+        Task::read(&imported).expect("an imported recording can be read");
+    }
 }
 
 /// States of a recording, of which the task is understood; the same bytes as its joints.

@@ -5,9 +5,11 @@ mod arguments;
 mod check;
 mod completions;
 mod cut_off;
+mod dataset;
 #[cfg(feature = "window")]
 mod display;
 mod duration;
+mod edit;
 mod explain;
 mod export;
 mod failure;
@@ -15,11 +17,13 @@ mod faultless;
 mod film_camera;
 mod hand_cameras;
 mod imitate;
+mod import;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
 mod man;
 mod multiply;
+mod number_run;
 mod output;
 mod picture_size;
 mod progress;
@@ -79,6 +83,12 @@ enum Command {
     Video(video::VideoArgs),
     /// Make a page of one recording, or a table of many, that any browser shows
     Report(report::ReportArgs),
+    /// Describe, check, repair, merge, split and trim folders of recordings and LeRobot datasets
+    Dataset(dataset::DatasetArgs),
+    /// Make a recording of another's segments: left out, in another order, faster or slower
+    Edit(edit::EditArgs),
+    /// Turn a recording of the original program into one of this program, for all commands but replay
+    Import(import::ImportArgs),
     /// Check task files and report every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
@@ -143,6 +153,9 @@ pub fn main() -> ExitCode {
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Video(args)) => video::run(&args),
         Some(Command::Report(args)) => report::run(&args),
+        Some(Command::Dataset(args)) => dataset::run(&args),
+        Some(Command::Edit(args)) => edit::run(&args),
+        Some(Command::Import(args)) => import::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]

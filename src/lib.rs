@@ -23,6 +23,7 @@
 //! | [`task`] | the task that a recording shows |
 //! | [`replay`] | recordings, simulated again |
 //! | [`export`] | recordings as datasets of other tools |
+//! | [`dataset`] | folders of recordings and datasets: imported, described, checked, edited |
 //! | [`imitation`], [`multiplication`] | whole episodes in worlds of their own |
 //! | [`planner`] | the robot's plan for such a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
@@ -49,6 +50,7 @@ pub use tabletop_assembly as assembly;
 pub use tabletop_camera as camera;
 pub use tabletop_controller as controller;
 pub use tabletop_core as core;
+pub use tabletop_dataset as dataset;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_drive as drive;
 pub use tabletop_episodes::{

@@ -178,6 +178,7 @@ fn refused(error: ReplayError) -> Failure {
         ReplayError::Record(_) => Failure::run(error),
         ReplayError::Session(_)
         | ReplayError::NoBeginning { .. }
+        | ReplayError::Imported { .. }
         | ReplayError::Settings { .. }
         | ReplayError::Io { .. } => Failure::input(error),
     }

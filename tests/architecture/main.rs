@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 34] = [
+const RULES: [Rule; 35] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -226,6 +226,21 @@ const RULES: [Rule; 34] = [
             "tabletop_task",
         ],
     ),
+    Rule::new(
+        "tabletop_dataset",
+        &[
+            "tabletop_assembly",
+            "tabletop_camera",
+            "tabletop_core",
+            "tabletop_export",
+            "tabletop_geometry",
+            "tabletop_recorder",
+            "tabletop_replay",
+            "tabletop_sim",
+            "tabletop_storage",
+            "tabletop_task",
+        ],
+    ),
     Rule::new("tabletop_harness", &["tabletop_harness_macro"]),
     Rule::new("tabletop_harness_macro", &[]),
     Rule::new("tabletop_user", &["tabletop_core", "tabletop_geometry"]),
@@ -250,6 +265,7 @@ const RULES: [Rule; 34] = [
             "tabletop_assembly",
             "tabletop_controller",
             "tabletop_core",
+            "tabletop_dataset",
             "tabletop_geometry",
             "tabletop_xml",
             "tabletop_physics",

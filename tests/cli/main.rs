@@ -4,10 +4,13 @@
 mod allowed_paths;
 mod anywhere;
 mod cut_off;
+mod dataset;
+mod edit;
 mod element_docs;
 mod explain;
 mod export;
 mod imitate;
+mod import;
 mod kept;
 #[cfg(feature = "window")]
 mod keys;

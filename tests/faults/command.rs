@@ -26,10 +26,13 @@ pub enum Subject {
     FinalState,
     Initialized,
     Required,
+    Imported,
+    Edited,
+    Merged,
 }
 
 impl Subject {
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 13] = [
         Self::Unfinished,
         Self::Imitated,
         Self::Multiplied,
@@ -40,6 +43,9 @@ impl Subject {
         Self::FinalState,
         Self::Initialized,
         Self::Required,
+        Self::Imported,
+        Self::Edited,
+        Self::Merged,
     ];
 
     fn arguments(self) -> &'static str {
@@ -54,6 +60,9 @@ impl Subject {
             Self::FinalState => "run --seconds 0.1 --quiet --final-state state.csv",
             Self::Initialized => "init work",
             Self::Required => "require demo --step 1 color",
+            Self::Imported => "import original imported",
+            Self::Edited => "edit demo edited --retime 1=2",
+            Self::Merged => "dataset merge demo demo --out merged",
         }
     }
 
@@ -69,7 +78,10 @@ impl Subject {
             | Self::MultipliedFurther
             | Self::Replayed
             | Self::Saved
-            | Self::Initialized => &[],
+            | Self::Initialized
+            | Self::Imported
+            | Self::Edited
+            | Self::Merged => &[],
         }
     }
 }
@@ -78,6 +90,9 @@ const SCENARIO: &str = r#"(setup: "shipped:tablesetup/blocks.xml", steps: [
   Start, Grasp("Red"), Glide(to: (3, -2.5, 4), seconds: 0.3), Glide(to: (3, -2.5, 1.5), seconds: 0.3), WaitUntilThere(1), Release,
   Wait(0.3), FINISH
 ])"#;
+
+/// A recording of the original program.
+const ORIGINAL: &str = "0,create,a,shape,block,xspan,1.0,zspan,1.0,yspan,1.0,color,#00ff00,mass,1.0\n0,move,a,0,0,0.5,0,0,0\n2,move,a,1,0,0.5,0,0,0\n";
 
 /// The place of the commands, with a folder that each of them begins with.
 pub struct Commands {
@@ -96,6 +111,8 @@ impl Commands {
         write("unfinished.ron", &SCENARIO.replace("FINISH", "")).unwrap();
         write("finished.ron", &SCENARIO.replace("FINISH", "Finish")).unwrap();
         write("state.csv", "mine\n").unwrap();
+        fs::create_dir(commands.beginning.join("original")).unwrap();
+        write("original/0.txt", ORIGINAL).unwrap();
         for arguments in [
             "run finished.ron --quiet --record demo",
             "require demo --step 1 shape",
@@ -201,7 +218,9 @@ impl Commands {
 
 /// Recordings that were made replay, and demonstrations that were kept are those of a command without a fault.
 fn is_whole(subject: Subject, folder: &Path, found: &Tree, expected: &Tree) -> Result<(), String> {
-    for recording in found.recordings() {
+    // What was imported has no commands to replay.
+    let recordings = found.recordings().into_iter();
+    for recording in recordings.filter(|name| name != "imported") {
         let output = command("replay --verify")
             .arg(&recording)
             .current_dir(folder)
@@ -213,7 +232,14 @@ fn is_whole(subject: Subject, folder: &Path, found: &Tree, expected: &Tree) -> R
         }
     }
     for (name, text) in &found.0 {
-        let is_new = ["many/", "started/", "work/", "saved.xml"];
+        let is_new = [
+            "many/",
+            "started/",
+            "work/",
+            "saved.xml",
+            "imported/",
+            "merged/",
+        ];
         let is_to_be_whole = is_new.iter().any(|prefix| name.starts_with(prefix));
         if is_to_be_whole && expected.0.get(name) != Some(text) {
             return Err(format!("{subject:?} has left another {name}"));

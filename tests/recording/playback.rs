@@ -5,6 +5,7 @@ use std::{fs, path::Path};
 use bevy::prelude::*;
 use tabletop::{
     core::{OpenRecording, Playback, PlaybackOrder, Timeline, TimelineStage},
+    dataset::import_recording,
     prelude::*,
     recorder::RecordingReader,
     replay::PlaybackPlugin,
@@ -108,6 +109,36 @@ fn recorded_poses(recording: &RecordingReader, tick: u64) -> Vec<(String, Pose)>
     let states = recording.states_at(SimTick(tick)).unwrap();
     let poses = states.into_iter().map(|(id, row)| (id, row.pose));
     poses.filter(|(_, pose)| pose.location.z > -990.0).collect()
+}
+
+#[test]
+fn an_imported_recording_is_shown_at_any_moment() {
+    let demonstration = recording("imported");
+    let source = demonstration.folder.with_extension("source");
+    let out = demonstration.folder.with_extension("imported");
+    let _not_there = fs::remove_dir_all(&source);
+    fs::create_dir_all(&source).unwrap();
+    for segment in ["0.txt", "1.txt", "2.txt"] {
+        fs::copy(demonstration.folder.join(segment), source.join(segment)).unwrap();
+    }
+    import_recording(&source, &out, None).unwrap();
+    let reader = RecordingReader::open(&out).unwrap();
+    let mut window = used_window("imported_window");
+    window.open_recording(&out);
+    assert_eq!(window.app.world().resource::<Timeline>().segments.len(), 3);
+    for tick in [90, 0, 33, 34, 20, 60] {
+        window.look_at(tick);
+        let found = window.poses();
+        let expected = recorded_poses(&reader, tick);
+        assert_eq!(found.len(), expected.len());
+        for ((id, pose), (other, expected)) in found.iter().zip(&expected) {
+            let way = pose.location.distance(expected.location);
+            assert!(
+                id == other && way < 1e-3,
+                "tick {tick}: {id} {pose:?}, {expected:?}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod episode_table;
 mod info;
 mod language;
 mod place;
+mod reader;
 mod stats;
 mod table;
 mod task_table;
@@ -39,6 +40,7 @@ use self::{
     stats::FeatureStats,
     video_file::VideoFile,
 };
+pub use self::{commit::PendingCommit, reader::LeRobotReader};
 use crate::{
     episode::{EncodedVideo, TrainingEpisode},
     error::ExportError,
@@ -121,6 +123,14 @@ impl LeRobot {
             next_videos: BTreeMap::new(),
             _lock: lock,
         })
+    }
+
+    /// What an export that was cut off has left in a dataset, if it has.
+    ///
+    /// # Errors
+    /// The folder cannot be read, or its journal is none that an export writes.
+    pub fn pending(folder: &Path) -> Result<Option<PendingCommit>, ExportError> {
+        Commit::pending(folder, &Storage::default())
     }
 
     /// Leaves out the language columns, which LeRobot reads from version 0.6 on.

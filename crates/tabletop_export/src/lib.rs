@@ -28,6 +28,7 @@ mod matlab;
 mod reading;
 mod rlds;
 mod robomimic;
+mod robomimic_reader;
 mod selection;
 
 pub use episode::{CameraTrack, EncodedVideo, FrameVectors, ObjectTrack, Subtask, TrainingEpisode};
@@ -36,8 +37,9 @@ pub use error::ExportError;
 pub use format::{DatasetFormat, ExportSummary, export};
 pub use foxglove::{Mcap, McapFile};
 pub use image::Image;
-pub use lerobot::LeRobot;
+pub use lerobot::{LeRobot, LeRobotReader, PendingCommit};
 pub use matlab::{Matlab, MatlabFile};
 pub use rlds::{EpisodeRecord, Rlds};
 pub use robomimic::Robomimic;
+pub use robomimic_reader::read_robomimic;
 pub use selection::{ActionKind, EpisodeSelection, PictureSelection, StateKind};

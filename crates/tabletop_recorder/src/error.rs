@@ -130,6 +130,12 @@ pub enum RecorderError {
         /// The fault.
         problem: String,
     },
+    /// A recording that is to be written holds what none may hold.
+    #[error("{problem}; no recording can hold it")]
+    Unfit {
+        /// The fault.
+        problem: String,
+    },
     /// A line of another file is invalid.
     #[error("{path}:{line}: {problem}; the file was changed, or is damaged")]
     Line {
@@ -167,6 +173,30 @@ pub enum RecorderError {
 }
 
 impl RecorderError {
+    /// Whether the user's input is at fault, and not the disk.
+    pub const fn is_of_input(&self) -> bool {
+        match self {
+            Self::MoveAside { .. }
+            | Self::Displaced { .. }
+            | Self::Create { .. }
+            | Self::Write { .. }
+            | Self::Interrupted { .. }
+            | Self::Picture { .. } => false,
+            Self::InUse { .. }
+            | Self::NoRecording { .. }
+            | Self::NoFolder { .. }
+            | Self::Command { .. }
+            | Self::BeingChanged { .. }
+            | Self::Read { .. }
+            | Self::Course { .. }
+            | Self::Files { .. }
+            | Self::Unfit { .. }
+            | Self::Line { .. }
+            | Self::Session { .. }
+            | Self::Format { .. } => true,
+        }
+    }
+
     pub(crate) fn create(path: &Path) -> impl FnOnce(io::Error) -> Self {
         |source| Self::Create {
             path: path.to_owned(),

@@ -18,6 +18,7 @@ pub(crate) mod new_recording;
 pub(crate) mod picture;
 pub(crate) mod properties;
 pub(crate) mod recording_files;
+pub(crate) mod recording_writer;
 pub(crate) mod segment_mark;
 pub(crate) mod session;
 pub(crate) mod states;

@@ -34,19 +34,22 @@ mod recording;
 
 pub use error::RecorderError;
 pub use files::{
+    bounds::object_fault,
     channels::Channels,
     durability::Durability,
     event::Event,
     frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME},
     hand_pictures::HandPictures,
     log_file::whole_lines,
+    recording_writer::{RecordingWriter, write_recording},
     session::{
-        Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
+        IMPORTED, Session, SessionCommand, SessionHeader, SessionObject, SessionScene,
+        SessionSettings,
     },
 };
 pub use reading::{
     event::{Occurrence, RecordedEvent},
-    original::read_original,
+    original::{LineRemark, OriginalRecording, read_original},
     recording_reader::RecordingReader,
     rows::{JointRow, StateRow},
     segment::{RecordedFrame, RecordedSegment},

@@ -20,6 +20,16 @@ pub enum ReplayError {
         /// The session log.
         path: PathBuf,
     },
+    /// It was imported.
+    #[error(
+        "{}: it was imported from another program, so there are no commands to simulate again; explain, imitate, multiply, \
+         export and the window read it",
+        folder.display()
+    )]
+    Imported {
+        /// Its folder.
+        folder: PathBuf,
+    },
     /// It was made with settings that this program does not have.
     #[error("{}:1: {name}: {problem}; it was recorded with version {program}, this is {}", path.display(), env!("CARGO_PKG_VERSION"))]
     Settings {

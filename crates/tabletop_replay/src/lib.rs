@@ -1,12 +1,15 @@
 //! Recordings, simulated again: replays, their verification, and any moment of a recording.
 
 mod difference;
+mod edit;
 mod error;
 mod playback;
 mod player;
+mod shown;
 mod verify;
 
 pub use difference::first_difference;
+pub use edit::{EditError, SegmentEdit};
 pub use error::ReplayError;
 pub use playback::PlaybackPlugin;
 pub use player::Player;
@@ -64,6 +67,9 @@ impl Replay {
         let path = folder.join("session.jsonl");
         let recording = RecordingReader::open(&folder)?;
         let header = recording.header();
+        if header.is_imported() {
+            return Err(ReplayError::Imported { folder });
+        }
         let fault = |name, problem| ReplayError::Settings {
             path: path.clone(),
             name,
@@ -155,6 +161,21 @@ impl Replay {
         match self.cut_off_at() {
             None => first_difference(self.folder(), replayed),
             Some(_) => difference::first_before_cut(self.folder(), replayed),
+        }
+    }
+
+    /// Its session: with an end added, if it was cut off.
+    pub const fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The same with other commands, or with another beginning and end.
+    #[must_use]
+    pub fn with_session(&self, session: Session) -> Self {
+        Self {
+            begin: session.header.begin_tick.map_or(self.begin, SimTick),
+            session,
+            ..self.clone()
         }
     }
 

@@ -16,7 +16,7 @@ use tabletop_recorder::set_earlier_commands;
 use tabletop_robot::Description;
 use tabletop_xml::AllowedFolders;
 
-use super::{Player, Replay, player};
+use super::{Player, Replay, ReplayError, player, shown, shown::ShownMotions};
 use tabletop_sim::{reset, settings::Settings};
 
 /// Time of a frame that is spent on going to a moment, so that pictures keep coming.
@@ -40,7 +40,7 @@ pub struct PlaybackPlugin {
 impl Plugin for PlaybackPlugin {
     fn build(&self, app: &mut App) {
         app.insert_resource(FreshTask(self.task.clone()))
-            .add_plugins(player::plugin)
+            .add_plugins((player::plugin, shown::plugin))
             .add_systems(
                 FixedLast,
                 (note_keyframe, note_grips)
@@ -129,11 +129,16 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
             folder.display()
         ));
     }
-    let replay = Replay::read_allowing(folder, &allowed(world));
-    let replay = replay.map_err(|error| error.to_string())?;
+    let (replay, motions) = match Replay::read_allowing(&folder, &allowed(world)) {
+        Err(ReplayError::Imported { folder }) => ShownMotions::read(&folder)
+            .map(|(replay, motions)| (replay, Some(motions)))
+            .map_err(|error| error.to_string())?,
+        replay => (replay.map_err(|error| error.to_string())?, None),
+    };
     let timeline = replay.recording().timeline();
     let timeline = timeline.map_err(|error| error.to_string())?;
-    if let Some(difference) = replay.settings.first_difference(&Settings::of(world)) {
+    let difference = replay.settings.first_difference(&Settings::of(world));
+    if let Some(difference) = difference.filter(|_| motions.is_none()) {
         let folder = replay.folder().display();
         return Err(format!(
             "{folder}: {difference}; `tabletop replay {folder} --window` plays it with its own settings"
@@ -150,6 +155,9 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
     };
     world.insert_resource(player);
     world.insert_resource(timeline);
+    if let Some(motions) = motions {
+        world.insert_resource(motions);
+    }
     world.resource_mut::<KeepRemoved>().for_playback = true;
     world.insert_resource(Opened {
         replay,
@@ -174,6 +182,7 @@ fn put_away(world: &mut World) {
         return;
     }
     world.remove_resource::<Player>();
+    world.remove_resource::<ShownMotions>();
     world.insert_resource(Replaying(false));
     world.insert_resource(Playback::default());
     world.resource_mut::<Time<Virtual>>().unpause();

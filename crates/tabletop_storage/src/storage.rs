@@ -2,7 +2,7 @@
 
 use std::{
     fs::{self, File, OpenOptions},
-    io,
+    io::{self, Read as _},
     path::{Path, PathBuf},
 };
 
@@ -13,6 +13,9 @@ use crate::{
     regular_file::{Symlinks, open_regular_file, require_regular_file},
     stored_file::{StoredFile, read_at_most},
 };
+
+/// Number of bytes of a file that are copied at a time.
+const COPIED_AT_ONCE: usize = 1 << 20;
 
 /// The file system.
 ///
@@ -113,6 +116,43 @@ impl Storage {
     /// It is no regular file, or cannot be read.
     pub fn read(&self, path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
         read_at_most(self.open_to_read(path)?.file(), most_bytes)
+    }
+
+    /// Copies a folder with all that is in it to where nothing is; what has a hidden name, which is for the program alone, stays behind.
+    ///
+    /// # Errors
+    /// It holds anything else than files and folders, or something cannot be read or written.
+    pub fn copy_folder(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let mut folders = vec![(from.to_owned(), to.to_owned())];
+        while let Some((from, to)) = folders.pop() {
+            self.create_folder(&to)?;
+            for entry in self.entries(&from)? {
+                let name = entry.file_name().unwrap_or_default();
+                if name.to_string_lossy().starts_with('.') {
+                    continue;
+                }
+                let copy = to.join(name);
+                match entry.symlink_metadata()?.is_dir() {
+                    true => folders.push((entry, copy)),
+                    false => self.copy_file(&entry, &copy)?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn copy_file(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let named =
+            |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", from.display()));
+        let mut file = open_regular_file(from, Symlinks::Refused).map_err(named)?;
+        let mut copy = self.create(to)?;
+        let mut bytes = vec![0; COPIED_AT_ONCE];
+        loop {
+            match file.read(&mut bytes).map_err(named)? {
+                0 => return Ok(()),
+                read => copy.append(&bytes[..read])?,
+            }
+        }
     }
 
     /// Gives another name to a file or folder.

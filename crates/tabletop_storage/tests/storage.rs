@@ -201,6 +201,30 @@ fn folders_that_begin_at_the_same_time_keep_their_contents() {
 }
 
 #[test]
+fn a_folder_is_copied_without_what_is_hidden_and_links_are_refused() {
+    let place = Place::new("copied");
+    let (from, to) = (place.join("from"), place.join("to"));
+    fs::create_dir_all(from.join("inner")).unwrap();
+    fs::write(from.join("inner/file"), "content").unwrap();
+    fs::write(from.join(".hidden"), "").unwrap();
+    let storage = Storage::default();
+    storage.copy_folder(&from, &to).unwrap();
+    assert_eq!(fs::read(to.join("inner/file")).unwrap(), b"content");
+    assert!(!to.join(".hidden").exists());
+    assert!(
+        storage.copy_folder(&from, &to).is_err(),
+        "something is there"
+    );
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("/etc", from.join("link")).unwrap();
+        let error = storage.copy_folder(&from, &place.join("other"));
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains("link"), "{error}");
+    }
+}
+
+#[test]
 fn a_temporary_folder_goes_with_its_owner() {
     let folder = TemporaryFolder::new("tabletop-test-temporary").unwrap();
     let path = folder.path().to_owned();

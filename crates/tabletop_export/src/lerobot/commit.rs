@@ -1,6 +1,7 @@
 //! Files that become part of a dataset together.
 
 use std::{
+    fmt,
     io::{self, ErrorKind},
     path::{Path, PathBuf},
 };
@@ -23,27 +24,73 @@ pub(super) struct Commit {
     files: Vec<PathBuf>,
 }
 
+/// What a commit that was cut off has left in a dataset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PendingCommit {
+    /// All of so many files are whole, and were about to get their names.
+    Named {
+        /// Their number.
+        files: usize,
+    },
+    /// So many files are there that are not whole, or have no whole neighbours: nothing of them belongs to the dataset.
+    Unnamed {
+        /// Their number.
+        files: usize,
+    },
+}
+
+impl fmt::Display for PendingCommit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Named { files } => write!(
+                f,
+                "an export was cut off while it gave {files} whole files their names"
+            ),
+            Self::Unnamed { files } => write!(
+                f,
+                "an export was cut off before its {files} files were whole"
+            ),
+        }
+    }
+}
+
 impl Commit {
     /// Begins a commit. The last one is completed if it had begun to give names; otherwise its files are removed.
     pub fn begin(folder: &Path, storage: &Storage) -> Result<Self, ExportError> {
-        let journal = folder.join(JOURNAL);
-        match storage.read(&journal, MOST_JOURNAL_BYTES) {
-            Ok(bytes) => {
-                let files: Vec<PathBuf> = serde_json::from_slice(&bytes)
-                    .map_err(|error| ExportError::dataset(&journal, error))?;
-                if let Some(stray) = files.iter().find(|file| !is_inside(file)) {
-                    let problem = format!("it names {} outside of the dataset", stray.display());
-                    return Err(ExportError::dataset(&journal, problem));
-                }
-                Self { files }.give_names(folder, storage)?;
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(error) => return Err(ExportError::io(&journal)(error)),
+        if let Some(begun) = Self::begun(folder, storage)? {
+            begun.give_names(folder, storage)?;
         }
         for part in parts_in(folder, storage)? {
             storage.remove_file(&part).map_err(ExportError::io(&part))?;
         }
         Ok(Self::default())
+    }
+
+    /// What a commit that was cut off has left, if it has.
+    pub fn pending(folder: &Path, storage: &Storage) -> Result<Option<PendingCommit>, ExportError> {
+        if let Some(begun) = Self::begun(folder, storage)? {
+            let files = begun.files.len();
+            return Ok(Some(PendingCommit::Named { files }));
+        }
+        let files = parts_in(folder, storage)?.len();
+        Ok((files > 0).then_some(PendingCommit::Unnamed { files }))
+    }
+
+    /// The last commit, if it had begun to give names and was then cut off.
+    fn begun(folder: &Path, storage: &Storage) -> Result<Option<Self>, ExportError> {
+        let journal = folder.join(JOURNAL);
+        let bytes = match storage.read(&journal, MOST_JOURNAL_BYTES) {
+            Ok(bytes) => bytes,
+            Err(error) if is_missing(&error) => return Ok(None),
+            Err(error) => return Err(ExportError::io(&journal)(error)),
+        };
+        let files: Vec<PathBuf> = serde_json::from_slice(&bytes)
+            .map_err(|error| ExportError::dataset(&journal, error))?;
+        if let Some(stray) = files.iter().find(|file| !is_inside(file)) {
+            let problem = format!("it names {} outside of the dataset", stray.display());
+            return Err(ExportError::dataset(&journal, problem));
+        }
+        Ok(Some(Self { files }))
     }
 
     /// Begins a file that is to have this path in the dataset. Returns its present path.
@@ -127,6 +174,7 @@ fn parts_in(folder: &Path, storage: &Storage) -> Result<Vec<PathBuf>, ExportErro
         folder.join("meta"),
         folder.join("meta/episodes"),
         folder.join("data"),
+        folder.join("videos"),
     ];
     while let Some(folder) = folders.pop() {
         let entries = match storage.entries(&folder) {
@@ -136,7 +184,9 @@ fn parts_in(folder: &Path, storage: &Storage) -> Result<Vec<PathBuf>, ExportErro
         };
         for entry in entries {
             let name = entry.file_name().unwrap_or_default().to_string_lossy();
-            if name.starts_with("chunk-") {
+            // Below `videos`, each camera has a folder.
+            let is_of_camera = folder.ends_with("videos") && entry.is_dir() && !entry.is_symlink();
+            if name.starts_with("chunk-") || is_of_camera {
                 folders.push(entry);
             } else if name.starts_with('.') && name.ends_with(".part") {
                 parts.push(entry);

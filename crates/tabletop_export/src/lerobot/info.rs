@@ -74,6 +74,16 @@ impl Info {
         }))
     }
 
+    /// Its features, by their names.
+    pub const fn features(&self) -> &Map<String, Value> {
+        &self.features
+    }
+
+    /// Frames a second.
+    pub const fn fps(&self) -> u64 {
+        self.fps
+    }
+
     /// True if the dataset has language columns.
     pub fn has_language(&self) -> bool {
         self.features.contains_key(LANGUAGE[0])

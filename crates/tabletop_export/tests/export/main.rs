@@ -6,4 +6,5 @@ mod hdf5;
 mod lerobot;
 mod mcap;
 mod pictures;
+mod reading;
 mod rlds;

@@ -9,6 +9,7 @@ mod values;
 pub(crate) use command::check_command;
 pub(crate) use scene::check_table;
 
+use bevy::math::Vec3;
 use tabletop_core::{
     HandCamera, HeadCamera, JointKind, JointSpec, ObjectSpec,
     limits::{DISPLACEMENTS, MASSES, PROPORTIONS, STIFFNESSES, TRAVELS},
@@ -17,7 +18,7 @@ use tabletop_geometry::Pose;
 
 use crate::files::bounds::{
     object::check_object,
-    values::{ANGLES, Checked, at, finite_pose, within},
+    values::{ANGLES, Checked, at, finite_pose, place, within},
 };
 
 /// Ticks from the first command of a log to its end: 30 days.
@@ -59,6 +60,16 @@ pub(crate) fn check_ticks(begin: u64, end: u64) -> Checked {
         )),
         false => Ok(()),
     }
+}
+
+/// The location of an object that is put somewhere.
+pub(crate) fn check_location(location: Vec3) -> Checked {
+    place("location", location)
+}
+
+/// The fault of an object that makes no sense.
+pub fn object_fault(object: &ObjectSpec) -> Option<String> {
+    check_object(object, &mut 0).err()
 }
 
 /// An object may be anywhere when a recording starts.

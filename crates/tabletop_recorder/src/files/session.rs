@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use tabletop_core::{
     Actor, ClockCommand, HandCamera, HeadCamera, IssuedCommand, JointSpec, ObjectSpec,
-    RecordingCommand, SimCommand, SimTick, Table,
+    RecordingCommand, SimCommand, SimTick, TICKS_PER_SECOND, Table,
 };
 use tabletop_geometry::Pose;
 
@@ -19,6 +19,7 @@ use crate::{
             check_ticks,
         },
         format::FORMAT,
+        frame::TICKS_PER_FRAME,
         json::{from_json, reads_back, to_json_line},
         limits::MOST_SESSION_BYTES,
         log_file::read_whole_lines,
@@ -51,6 +52,32 @@ pub struct SessionHeader {
     pub hand_cameras: Vec<HandCamera>,
     /// The [settings](SessionSettings) when the recording started.
     pub settings: Map<String, Value>,
+}
+
+/// The name of the setting that says of a recording that it was imported, and not simulated.
+pub const IMPORTED: &str = "imported";
+
+impl SessionHeader {
+    /// The header of a recording that this program writes, from this tick on.
+    pub fn new(start_tick: u64) -> Self {
+        Self {
+            format: FORMAT,
+            program: env!("CARGO_PKG_VERSION").into(),
+            ticks_per_second: TICKS_PER_SECOND,
+            ticks_per_frame: TICKS_PER_FRAME,
+            begin_tick: None,
+            start_tick,
+            earlier_commands: 0,
+            camera: None,
+            hand_cameras: Vec::new(),
+            settings: Map::new(),
+        }
+    }
+
+    /// True if the recording was imported from another program: its states were not simulated, and its commands are not known.
+    pub fn is_imported(&self) -> bool {
+        self.settings.contains_key(IMPORTED)
+    }
 }
 
 /// Further content of the next recording's header that a replay must know.
@@ -211,7 +238,7 @@ const LONGEST_SHOWN: usize = 200;
 
 impl SessionScene {
     /// Returns the first invalid value in it as a fault.
-    fn check(&self) -> Result<(), String> {
+    pub(crate) fn check(&self) -> Result<(), String> {
         self.table.iter().try_for_each(check_table)?;
         let mut parts = 0;
         for object in &self.objects {

@@ -131,28 +131,47 @@ pub(super) fn read(
     text: &str,
     commas: CommaStyle,
 ) -> Result<Vec<RecordedEvent>, RecorderError> {
+    let lines = read_lines(text, commas).into_iter();
+    let events = lines.map(|(line, event)| event.map_err(|problem| damaged(path, line, problem)));
+    events.collect()
+}
+
+/// The events in the lines of a text, each with its line's number, from 1; or what is wrong with the line.
+pub(super) fn read_lines(
+    text: &str,
+    commas: CommaStyle,
+) -> Vec<(u64, Result<RecordedEvent, String>)> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .quoting(commas == CommaStyle::Quoted)
+        .trim(match commas {
+            CommaStyle::Quoted => csv::Trim::None,
+            // Files that were edited by hand may have spaces.
+            CommaStyle::Escaped => csv::Trim::Fields,
+        })
         .from_reader(text.as_bytes());
-    let mut events = Vec::new();
-    for record in reader.records() {
-        let place = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);
-        let record = record.map_err(|error| {
+    let records = reader.records().map(|record| match record {
+        Ok(record) => {
+            let line = record.position().map_or(0, csv::Position::line);
+            (line, event_of(&record, commas))
+        }
+        Err(error) => {
             let line = error.position().map_or(0, csv::Position::line);
-            damaged(path, line, error)
-        })?;
-        let fields: Vec<_> = record.iter().map(str::to_owned).collect();
-        let fields = match commas {
-            CommaStyle::Quoted => fields,
-            CommaStyle::Escaped => joined(fields),
-        };
-        let fields: Vec<_> = fields.iter().map(String::as_str).collect();
-        let event = parse(&fields).map_err(|problem| damaged(path, place(&record), problem))?;
-        events.push(event);
-    }
-    Ok(events)
+            (line, Err(error.to_string()))
+        }
+    });
+    records.collect()
+}
+
+fn event_of(record: &csv::StringRecord, commas: CommaStyle) -> Result<RecordedEvent, String> {
+    let fields: Vec<_> = record.iter().map(str::to_owned).collect();
+    let fields = match commas {
+        CommaStyle::Quoted => fields,
+        CommaStyle::Escaped => joined(fields),
+    };
+    let fields: Vec<_> = fields.iter().map(String::as_str).collect();
+    parse(&fields)
 }
 
 /// The values of fields that were split at commas with a backslash before them.

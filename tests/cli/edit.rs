@@ -1,0 +1,106 @@
+//! `tabletop edit`: a recording of another's segments.
+
+use std::fs;
+
+use crate::support::{
+    place, record, replays_to_the_same_bytes, scenario, stderr, stdout, tabletop,
+};
+
+fn done(arguments: &[&str]) -> String {
+    let output = tabletop(arguments);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{arguments:?}: {}",
+        stderr(&output)
+    );
+    stdout(&output)
+}
+
+/// The red block is put to the right, then the green one to the left.
+fn demo(name: &str) -> String {
+    let steps = r#"Start, Wait(0.5),
+        Grasp("RedBlock"), Glide(to: (5, -2.5, 4), seconds: 0.5), Glide(to: (5, -2.5, 1.1), seconds: 0.5), Release, Wait(0.5),
+        Grasp("GreenBlock"), Glide(to: (-5, -2.5, 4), seconds: 0.5), Glide(to: (-5, -2.5, 1.1), seconds: 0.5), Release, Wait(0.5),
+        Finish"#;
+    record(
+        scenario(&format!("{name}.ron"), steps).to_str().unwrap(),
+        name,
+    )
+}
+
+fn seconds(folder: &str) -> f64 {
+    let info = done(&["dataset", "info", folder]);
+    let line = info
+        .lines()
+        .find_map(|line| line.strip_prefix("seconds   "));
+    line.unwrap().parse().unwrap()
+}
+
+#[test]
+fn segments_are_left_out_exchanged_slowed_and_appended() {
+    let demo = demo("edit_demo");
+    let explained = done(&["explain", &demo]);
+    let both: Vec<_> = explained.lines().collect();
+    let out = place("edit_out").to_str().unwrap().to_owned();
+
+    done(&["edit", &demo, &out, "--drop", "3-4"]);
+    replays_to_the_same_bytes(&out);
+    let said = done(&["explain", &out]);
+    assert_eq!(said.lines().collect::<Vec<_>>(), [both[0]]);
+
+    done(&["edit", &demo, &out, "--swap", "1-2,3-4"]);
+    replays_to_the_same_bytes(&out);
+    let said = done(&["explain", &out]);
+    assert!(said.lines().next().unwrap().contains("green"), "{said}");
+    assert_eq!(said.lines().count(), 2);
+
+    done(&["edit", &demo, &out, "--retime", "1=2"]);
+    replays_to_the_same_bytes(&out);
+    let longer = seconds(&out) - seconds(&demo);
+    assert!((0.5..2.5).contains(&longer), "{longer}");
+    assert_eq!(done(&["explain", &out]), explained);
+
+    let twice = place("edit_twice").to_str().unwrap().to_owned();
+    done(&["edit", &demo, &twice, "--splice", &demo]);
+    replays_to_the_same_bytes(&twice);
+    assert!((seconds(&twice) - 2.0 * seconds(&demo)).abs() < 0.2);
+}
+
+#[test]
+fn an_edit_that_fails_is_refused_with_the_reason() {
+    let demo = demo("edit_refused_demo");
+    let out = place("edit_refused");
+    for (edit, reason) in [
+        (
+            ["--drop", "1"],
+            "segment 2: the release of RedBlock does not happen any more",
+        ),
+        (
+            ["--swap", "1,2"],
+            "segment 2: the release of RedBlock does not happen any more",
+        ),
+        (
+            ["--drop", "9"],
+            "there is no segment 9 to edit; the recording has segments 1 to 4",
+        ),
+        (["--drop", "0"], "there is no segment 0 to edit"),
+    ] {
+        let output = tabletop(&[&["edit", &demo, out.to_str().unwrap()][..], &edit].concat());
+        assert_eq!(
+            output.status.code(),
+            Some(1),
+            "{edit:?}: {}",
+            stderr(&output)
+        );
+        assert!(
+            stderr(&output).contains(reason),
+            "{edit:?}: {}",
+            stderr(&output)
+        );
+        assert!(!out.exists());
+    }
+    assert!(fs::read_dir(&demo).is_ok());
+    let output = tabletop(&["edit", &demo, out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+}
