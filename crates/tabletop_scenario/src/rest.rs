@@ -14,6 +14,9 @@ const TREMBLE: (f32, f32) = (0.005, 0.005);
 /// Number of ticks without motion after which an object is at rest.
 const TICKS_TO_REST: u32 = TICKS_PER_SECOND / 2;
 
+/// Number of ticks after the last step for which checks of placement must go on to hold.
+pub(crate) const TICKS_TO_LAST: u64 = 3 * TICKS_PER_SECOND as u64;
+
 /// Number of ticks without motion after which a held object has arrived.
 const TICKS_TO_ARRIVE: u32 = TICKS_PER_SECOND / 5;
 
