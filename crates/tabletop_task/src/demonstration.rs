@@ -28,6 +28,8 @@ pub struct Demonstration {
     pub start: SimTick,
     /// The last tick.
     pub end: SimTick,
+    /// True if only events are known, whose poses may be of a world without physics.
+    pub is_poses_only: bool,
 }
 
 /// An object of a demonstration.

@@ -37,10 +37,10 @@ pub enum DetourKind {
     HandedOver,
 }
 
-/// Largest displacement, in units and rad, at which an object counts as in the same place.
-const SAME_PLACE: (f32, f32) = (0.05, 0.05);
-/// Largest displacement, in units, of an object that is only held.
-const HELD_STILL: f32 = 0.1;
+/// Largest displacement of an object that is still in its place, in units.
+pub(crate) const IN_PLACE: f32 = 0.15;
+/// Largest turn of an object that is still in its place, in rad.
+const UNTURNED: f32 = 0.05;
 
 /// Takes the detours out of the manipulations, which stay in order.
 pub fn fold(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Vec<Detour> {
@@ -60,12 +60,17 @@ fn fold_one(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Opt
     for i in 0..manipulations.len() {
         let manipulation = &manipulations[i];
         if manipulation.ending == Ending::Released && is_back(shown, manipulation) {
-            let kind = match farthest(shown, manipulation) < HELD_STILL {
+            let kind = match farthest(shown, manipulation) < IN_PLACE {
                 true => DetourKind::InPlace,
                 false => DetourKind::AwayAndBack,
             };
-            let manipulation = manipulations.remove(i);
-            return Some(detour(&manipulation, kind));
+            let back = manipulations.remove(i);
+            let mut later = manipulations[i..].iter_mut();
+            if let Some(next) = later.find(|next| next.object == back.object) {
+                // What is hardly moved several times may be moved by much.
+                next.from = back.from;
+            }
+            return Some(detour(&back, kind));
         }
         let rest = &manipulations[i + 1..];
         let next = rest
@@ -105,7 +110,7 @@ fn is_back(shown: &Demonstration, manipulation: &Manipulation) -> bool {
     };
     let symmetry = Symmetry::of(&object.spec.shape);
     let (moved, turned) = symmetry.difference(manipulation.from, manipulation.to);
-    moved < SAME_PLACE.0 && turned < SAME_PLACE.1
+    moved < IN_PLACE && turned < UNTURNED
 }
 
 /// Largest distance of an object from where it was, in units.

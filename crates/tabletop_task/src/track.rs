@@ -5,6 +5,13 @@ use tabletop_geometry::Pose;
 
 use crate::rotation::angle_between;
 
+/// Number of ticks for which something that is at rest has stayed in place.
+const STILL_TICKS: u64 = 15;
+/// Largest displacement of something that stays in place, in units.
+const STILL_LENGTH: f32 = 0.01;
+/// Largest turn of something that stays in place, in rad.
+const STILL_ANGLE: f32 = 0.01;
+
 /// The poses of an object over time; each holds until the next one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track(Vec<(SimTick, Pose)>);
@@ -42,9 +49,6 @@ impl Track {
 
     /// The first tick, not before `from`, after which the object stays in place for a quarter of a second; `until` at the latest.
     pub fn rest_after(&self, from: SimTick, until: SimTick) -> SimTick {
-        const STILL_TICKS: u64 = 15;
-        const STILL_LENGTH: f32 = 0.01;
-        const STILL_ANGLE: f32 = 0.01;
         let mut rest = from;
         let changes = self
             .0
@@ -57,13 +61,24 @@ impl Track {
             if tick.0 > rest.0 + STILL_TICKS {
                 break;
             }
-            let moved = pose.location.distance(still.location);
-            if moved > STILL_LENGTH || angle_between(pose.rotation, still.rotation) > STILL_ANGLE {
+            if !is_near(*pose, still) {
                 (rest, still) = (*tick, *pose);
             }
         }
         SimTick(rest.0 + STILL_TICKS).min(until)
     }
+
+    /// True if the object has stayed in place for a quarter of a second.
+    pub(crate) fn is_still_at(&self, tick: SimTick) -> bool {
+        let before = self.at(SimTick(tick.0.saturating_sub(STILL_TICKS)));
+        let pair = before.zip(self.at(tick));
+        pair.is_some_and(|(before, now)| is_near(before, now))
+    }
+}
+
+fn is_near(a: Pose, b: Pose) -> bool {
+    a.location.distance(b.location) <= STILL_LENGTH
+        && angle_between(a.rotation, b.rotation) <= STILL_ANGLE
 }
 
 #[cfg(test)]
