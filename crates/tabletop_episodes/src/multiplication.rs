@@ -5,6 +5,7 @@
 
 mod collection;
 mod fingerprint;
+mod lasting;
 mod performance;
 mod variation;
 mod way;
@@ -17,12 +18,13 @@ use std::{fmt, io, path::Path};
 use bevy::prelude::*;
 use serde_json::json;
 use tabletop_assembly::{IdAllocator, assemble};
+use tabletop_controller::Sight;
 use tabletop_core::{
     HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
     Table, WriteCommand as _,
 };
 use tabletop_kinematics::ModelError;
-use tabletop_planner::{PlanFailure, RobotBody, imitate};
+use tabletop_planner::{Before, PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{
     HandPictures, RecorderError, RecorderPlugin, RecordingReader, finish_recording,
 };
@@ -34,6 +36,7 @@ use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
 use crate::{beginning::scene_at_beginning, imitation::AppStage, robot_body::robot_body};
 use fingerprint::Fingerprint;
+use lasting::lasts;
 use performance::perform;
 use variation::Varying;
 
@@ -167,7 +170,8 @@ impl Multiplication {
         }
     }
 
-    /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at the end.
+    /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at
+    /// the end and go on to hold.
     ///
     /// # Errors
     /// It cannot be recorded there.
@@ -253,9 +257,10 @@ impl Multiplication {
         app.step(SETTLING);
         app.world_mut().write_command(RecordingCommand::Start);
         app.step(1);
+        let before = Before::anything(&Sight::of(app.world_mut()));
         let shown = self.act(&mut app, &binding, seed);
         finish_recording(&mut app).map_err(MultiplyError::Record)?;
-        Ok(shown)
+        Ok(shown.and_then(|()| lasts(&mut app, &self.task, &binding, &before)))
     }
 
     /// A fingerprint of all that decides the demonstrations besides variation and seed: the recording, its requirements, the objects, and a robot

@@ -38,16 +38,9 @@ pub(super) fn perform(
     binding: &Binding,
 ) -> Result<(), (usize, PlanFailure)> {
     let sight = Sight::of(app.world_mut());
-    let beginning = sight
-        .objects
-        .iter()
-        .map(|(id, object)| (id.clone(), object.pose));
     let mut performance = Performance {
         binding,
-        before: Before {
-            beginning: beginning.collect(),
-            step: None,
-        },
+        before: Before::anything(&sight),
         acts: acts(shown, task)?,
         app,
     };
