@@ -319,7 +319,8 @@ fn a_pushed_object_is_mentioned() {
     ));
     assert_eq!(lines.len(), 2, "{lines:?}");
     assert!(
-        lines[1].starts_with("- On its way, the red block moves the green block by 3.1, to (-5.1, "),
+        lines[1]
+            .starts_with("- On its way, the red block moves the green block by 3.1, to (-5.1, "),
         "{lines:?}"
     );
     // One that is carried along is not.
@@ -330,7 +331,10 @@ fn a_pushed_object_is_mentioned() {
          Grasp(\"GreenBlock\"), Glide(to: (-4, 0, 1), seconds: 2), Release,",
     ));
     assert_eq!(lines.len(), 2, "{lines:?}");
-    assert!(lines[1].starts_with("2. Put the green block on"), "{lines:?}");
+    assert!(
+        lines[1].starts_with("2. Put the green block on"),
+        "{lines:?}"
+    );
 }
 
 /// A block that is held and put down again this far to the right.

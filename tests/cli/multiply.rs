@@ -297,6 +297,45 @@ fn what_a_demonstration_has_put_down_stays() {
 }
 
 #[test]
+fn mechanisms_are_operated_again() {
+    for scenario in ["lock", "panel", "valve", "dispenser", "presets", "buttons"] {
+        let demo = record_shipped(scenario, &format!("multiply_{scenario}"));
+        let out = place(&format!("multiply_{scenario}_out"));
+        multiply(&demo, &out, &["--count", "3"]);
+        let expected = explained(Path::new(&demo));
+        let operations = |told: &str| -> Vec<_> {
+            let lines = told.lines().filter(|line| line.starts_with("- "));
+            let operations = lines.filter(|line| !line.starts_with("- On its way"));
+            operations.map(str::to_owned).collect()
+        };
+        for number in ["0000", "0001", "0002"] {
+            let told = explained(&out.join(number));
+            assert_eq!(
+                operations(&told),
+                operations(&expected),
+                "{scenario} {number}"
+            );
+        }
+    }
+}
+
+#[test]
+fn recordings_of_events_alone_are_multiplied() {
+    let originals = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/originals");
+    for year in ["2014", "2017"] {
+        let demo = originals.join(year).to_str().unwrap().to_owned();
+        let out = place(&format!("multiply_{year}"));
+        let output = tabletop(&["multiply", &demo, "--out", out.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("--setup"), "{}", stderr(&output));
+        let setup = originals.join(format!("{year}.xml"));
+        let options = ["--count", "3", "--setup", setup.to_str().unwrap()];
+        multiply(&demo, &out, &options);
+        replays_to_the_same_bytes(out.join("0002"));
+    }
+}
+
+#[test]
 fn a_recording_in_the_place_of_a_robot_is_named() {
     let demo = record_shipped("stack_three", "multiply_swapped");
     let output = tabletop(&["multiply", "--robot", &demo, "--out", "nowhere"]);

@@ -63,7 +63,9 @@ impl Before {
     pub fn anything(sight: &Sight) -> Self {
         let poses = sight.objects.iter();
         Self {
-            beginning: poses.map(|(id, object)| (id.clone(), object.pose)).collect(),
+            beginning: poses
+                .map(|(id, object)| (id.clone(), object.pose))
+                .collect(),
             step: None,
         }
     }
@@ -249,8 +251,8 @@ fn exact(
         let pose = frame * goal.pose;
         Candidate::new(pose, change_of_side(step, frame, pose))
     });
-    let is_level = |candidate: &Candidate| candidate.pose.location.z > 0.0;
-    let upright = poses.filter(is_level);
+    let is_above_table = |candidate: &Candidate| (candidate.pose * symmetry.centre).z > 0.0;
+    let upright = poses.filter(is_above_table);
     // A reference that looks the same upside down must not turn the goal upside down.
     let shown_height = goal.pose.location.length();
     let mut all: Vec<_> = upright.collect();

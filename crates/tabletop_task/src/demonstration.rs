@@ -214,9 +214,9 @@ impl Demonstration {
                     Occurrence::Loosen { bond, .. } => {
                         operate(OperationDeed::Loosen(bond.clone()));
                     }
-                    Occurrence::Cut { link, .. } => {
-                        let link = link.clone();
-                        operate(OperationDeed::Cut { link });
+                    Occurrence::Cut { blade, link, .. } => {
+                        let (blade, link) = (blade.clone(), link.clone());
+                        operate(OperationDeed::Cut { blade, link });
                     }
                     Occurrence::InitializeControl { .. } => {}
                 }

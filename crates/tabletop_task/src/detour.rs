@@ -7,6 +7,7 @@ use crate::{
     arrangement::Placed,
     demonstration::Demonstration,
     manipulation::{Ending, Manipulation},
+    operation::OperationDeed,
     symmetry::Symmetry,
 };
 
@@ -84,6 +85,7 @@ fn fold_one(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Opt
             && between
                 .iter()
                 .all(|other| is_apart(shown, manipulation, other))
+            && !is_operated(shown, manipulation, &manipulations[next])
         {
             let first = manipulations.remove(i);
             let last = &mut manipulations[next - 1];
@@ -122,6 +124,22 @@ fn farthest(shown: &Demonstration, manipulation: &Manipulation) -> f32 {
     poses
         .map(|pose| pose.location.distance(manipulation.from.location))
         .fold(0.0, f32::max)
+}
+
+/// True if an object was operated, fastened or loosened between its two manipulations.
+fn is_operated(shown: &Demonstration, one: &Manipulation, next: &Manipulation) -> bool {
+    let spec = shown.named(&one.object).map(|object| &object.spec);
+    let has_control = |control: &str| spec.is_some_and(|spec| spec.control(control).is_some());
+    let is_meant = |deed: &OperationDeed| match deed {
+        OperationDeed::Trigger { control } => has_control(control),
+        OperationDeed::PointTo { .. } | OperationDeed::Cut { .. } => false,
+        OperationDeed::Fasten(bond) | OperationDeed::Loosen(bond) => {
+            bond.guest == one.object || bond.host == one.object
+        }
+    };
+    let between = one.release..=next.grasp;
+    let mut operations = shown.operations.iter();
+    operations.any(|done| between.contains(&done.tick) && is_meant(&done.deed))
 }
 
 /// True if neither has made room for the other nor carries it: the places of one are not above or below those of the other.

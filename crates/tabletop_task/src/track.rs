@@ -32,6 +32,24 @@ impl Track {
         Some(*pose)
     }
 
+    /// The pose at the end of a tick on an even way from each pose to the next, which takes at most this many ticks.
+    pub fn smooth_at(&self, tick: SimTick, most: u64) -> Option<Pose> {
+        let known = self.0.partition_point(|(since, _)| *since <= tick);
+        let now = self.at(tick)?;
+        let Some((next, to)) = self.0.get(known).filter(|_| known > 0) else {
+            return Some(now);
+        };
+        let begun = self.0[known - 1].0.0.max(next.0.saturating_sub(most));
+        if tick.0 <= begun {
+            return Some(now);
+        }
+        let part = (tick.0 - begun) as f32 / (next.0 - begun) as f32;
+        Some(Pose::new(
+            now.location.lerp(to.location, part),
+            now.rotation.slerp(to.rotation, part).normalize(),
+        ))
+    }
+
     /// Its poses, and from when on it had each.
     pub(crate) fn entries(&self) -> impl Iterator<Item = (SimTick, Pose)> {
         self.0.iter().copied()
@@ -97,6 +115,25 @@ mod tests {
             [0, 10, 19, 20, 99].map(|tick| track.at(SimTick(tick)).map(|pose| pose.location.x));
         assert_eq!(found, [1.0, 1.0, 1.0, 3.0, 3.0].map(Some));
         assert_eq!(Track::default().at(SimTick(0)), None);
+    }
+
+    #[test]
+    fn a_smooth_way_takes_no_longer_than_a_frame() {
+        let mut track = Track::default();
+        for (tick, x) in [(0, 0.0), (30, 1.5), (45, 3.0)] {
+            track.push(SimTick(tick), Pose::at(Vec3::X * x));
+        }
+        for (tick, x) in [
+            (0, 0.0),
+            (15, 0.0),
+            (20, 0.5),
+            (30, 1.5),
+            (35, 2.0),
+            (99, 3.0),
+        ] {
+            let found = track.smooth_at(SimTick(tick), 15).unwrap().location.x;
+            assert!((found - x).abs() < 1e-5, "{tick}: {found}");
+        }
     }
 
     #[test]
