@@ -90,12 +90,14 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     print(&(lines.join("\n") + "\n"))
 }
 
-/// The steps with their numbers, and the operations between them.
+/// The steps with their numbers, and the operations and pushes between them.
 fn reported(task: &Task) -> Vec<String> {
     let steps = task.steps.iter().map(|step| (step.grasp, numbered(step)));
     let operations = task.operations.iter();
     let operations = operations.map(|done| (done.tick, format!("- {}", done.sentence())));
-    let mut reported: Vec<_> = steps.chain(operations).collect();
+    let pushes = task.pushes.iter();
+    let pushes = pushes.map(|push| (push.tick, format!("- {}", push.sentence)));
+    let mut reported: Vec<_> = steps.chain(operations).chain(pushes).collect();
     reported.sort_by_key(|(tick, _)| *tick);
     reported.into_iter().map(|(_, line)| line).collect()
 }

@@ -9,7 +9,7 @@ use clap::{
 use serde_json::{Value, json};
 use tabletop::{
     multiplication::{Collection, CollectionError, Made, Multiplication, Variation},
-    recorder::RecordingReader,
+    recorder::{RecordingReader, read_original},
     run_episodes,
 };
 
@@ -101,17 +101,33 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     };
     let robot_or_baxter = robot.clone().unwrap_or_default();
     let hand_pictures = args.hand_cameras.of(&robot_or_baxter)?;
-    let recording = RecordingReader::open(&args.recording).map_err(Failure::input)?;
-    say_if_cut_off(&recording, "multiplied");
-    let multiplication =
-        Multiplication::of(&recording, robot, variation, args.seed).map_err(Failure::input)?;
-    let multiplication = match &args.setup {
+    let scene = match &args.setup {
         Some(setup) => {
-            let scene =
-                read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?;
-            multiplication.with_scene(scene).map_err(Failure::run)?
+            Some(read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?)
         }
-        None => multiplication,
+        None => None,
+    };
+    let original = read_original(&args.recording).map_err(Failure::input)?;
+    let multiplication = match (original, scene) {
+        (Some(_), None) => {
+            return Err(Failure::input(
+                "the recording does not say which scene it began with; name one with --setup",
+            ));
+        }
+        (Some(_), Some(scene)) => {
+            Multiplication::of_events(&args.recording, scene, robot, variation, args.seed)
+                .map_err(Failure::input)?
+        }
+        (None, scene) => {
+            let recording = RecordingReader::open(&args.recording).map_err(Failure::input)?;
+            say_if_cut_off(&recording, "multiplied");
+            let multiplication = Multiplication::of(&recording, robot, variation, args.seed)
+                .map_err(Failure::input)?;
+            match scene {
+                Some(scene) => multiplication.with_scene(scene).map_err(Failure::run)?,
+                None => multiplication,
+            }
+        }
     };
     let multiplication = multiplication.with_hand_pictures(hand_pictures);
     let manifest = args.manifest(&multiplication);

@@ -293,6 +293,91 @@ fn turning_holding_removing_and_keeping_are_distinguished() {
 }
 
 #[test]
+fn an_object_that_still_falls_at_the_end_was_put_nowhere() {
+    for wait in ["", "Wait(0.1),"] {
+        let steps = format!(
+            "WaitUntilRest(5), Start, Grasp(\"Red\"), Glide(to: (-3, -3, 8), seconds: 0.5), \
+             Glide(to: (3, -2.5, 8), seconds: 0.5), WaitUntilThere(2), Release, {wait} Finish,"
+        );
+        let file = place("explain_let_go.ron");
+        let setup = "shipped:tablesetup/blocks.xml";
+        fs::write(&file, format!("(setup: {setup:?}, steps: [{steps}])")).unwrap();
+        let demo = record(file.to_str().unwrap(), "explain_let_go");
+        means(&demo, &["1. Let go of the red block in the air."]);
+        let output = tabletop(&["imitate", &demo]);
+        assert_eq!(output.status.code(), Some(1));
+        let told = stdout(&output) + &stderr(&output);
+        assert!(told.contains("does not show where it belongs"), "{told}");
+    }
+}
+
+#[test]
+fn a_pushed_object_is_mentioned() {
+    let lines = explained(&shown(
+        "pushed",
+        "Grasp(\"RedBlock\"), Glide(to: (-2, 0, 1), seconds: 1), WaitUntilThere(2), Release,",
+    ));
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert!(
+        lines[1]
+            .starts_with("- On its way, the red block moves the green block by 3.1, to (-5.1, "),
+        "{lines:?}"
+    );
+    // One that is carried along is not.
+    let lines = explained(&shown(
+        "carried_along",
+        "Grasp(\"RedBlock\"), Glide(to: (2, 0, 5), seconds: 0.3), Glide(to: (-2, 0, 5), seconds: 0.3), \
+         Glide(to: (-2, 0, 3), seconds: 0.3), Release, WaitUntilRest(3), \
+         Grasp(\"GreenBlock\"), Glide(to: (-4, 0, 1), seconds: 2), Release,",
+    ));
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    assert!(
+        lines[1].starts_with("2. Put the green block on"),
+        "{lines:?}"
+    );
+}
+
+/// A block that is held and put down again this far to the right.
+fn nudge(from: f32, by: f32) -> String {
+    format!(
+        "Grasp(\"RedBlock\"), Glide(to: ({}, 0, 1), seconds: 0.3), WaitUntilThere(1), Release, WaitUntilRest(3),\n",
+        from + by
+    )
+}
+
+#[test]
+fn a_nudge_is_no_step_and_many_nudges_are_one() {
+    let lines = explained(&shown("nudge", &nudge(2.0, 0.14)));
+    assert_eq!(lines[0], "Nothing is moved for good.");
+    assert!(lines[1].contains("was held in its place"), "{lines:?}");
+
+    let nudges: String = [2.0, 2.14, 2.28].map(|from| nudge(from, 0.14)).concat();
+    let lines = explained(&shown("nudges", &nudges));
+    assert_eq!(lines[0], "1. Put the red block on the table at (2.4, 0).");
+
+    let next = nudge(2.0, 0.14) + &carry("RedBlock", (2.14, 0.0), (6.0, 2.0));
+    let lines = explained(&shown("nudged_first", &next));
+    assert_eq!(lines[0], "1. Put the red block on the table at (6, 2).");
+    assert!(lines[1].contains("was held in its place"), "{lines:?}");
+}
+
+#[test]
+fn a_round_ring_is_put_around_a_round_peg() {
+    means(
+        &recorded("hanoi_rings"),
+        &[
+            "1. Put the red ring around PegC.",
+            "2. Put the green ring around PegB.",
+            "3. Put the red ring around PegB, on the green ring.",
+            "4. Put the blue ring around PegC.",
+            "5. Put the red ring around PegA.",
+            "6. Put the green ring around PegC, on the blue ring.",
+            "7. Put the red ring around PegC, on the green ring.",
+        ],
+    );
+}
+
+#[test]
 fn both_hands_work_at_the_same_time() {
     let steps = "With(Left, Grasp(\"GreenBlock\")), With(Right, Grasp(\"RedBlock\")),
         With(Left, Glide(to: (-2, 0, 4), seconds: 0.3)), With(Right, Glide(to: (2, 0, 4), seconds: 0.3)),

@@ -2,7 +2,16 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use crate::support::{place, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop};
+use tabletop::{
+    controller::Sight,
+    core::{StepApp as _, TICKS_PER_SECOND},
+    headless_app_with,
+    replay::Replay,
+};
+
+use crate::support::{
+    place, record, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop,
+};
 
 fn multiply(demo: &str, out: &Path, options: &[&str]) -> String {
     let out = out.to_str().unwrap();
@@ -246,6 +255,84 @@ fn another_robot_shows_it() {
     assert_eq!(output.status.code(), Some(2));
     let told = stderr(&output);
     assert!(told.contains("made with other options"), "{told}");
+}
+
+/// Lets time pass after the end of a recording; the objects that have moved meanwhile by more than a part of a unit.
+fn moved_after(recording: &Path, seconds: u64) -> Vec<String> {
+    let replay = Replay::read(recording).unwrap();
+    let mut app = headless_app_with(replay.plugins());
+    replay.play_in(&mut app);
+    app.step(replay.ticks());
+    let ended = Sight::of(app.world_mut()).objects;
+    app.step(seconds * u64::from(TICKS_PER_SECOND));
+    let later = Sight::of(app.world_mut()).objects;
+    assert!(!ended.is_empty());
+    let has_moved = |id: &&String| match later.get(*id) {
+        Some(now) => now.pose.location.distance(ended[*id].pose.location) > 0.1,
+        None => true,
+    };
+    ended.keys().filter(has_moved).cloned().collect()
+}
+
+/// `COUNT=1000` looks at more of them.
+#[test]
+fn what_a_demonstration_has_put_down_stays() {
+    let count = std::env::var("COUNT").unwrap_or_else(|_| "12".into());
+    let steps = "WaitUntilRest(5), Start,
+        Grasp(\"Green\"), Glide(to: (0, -4, 4), seconds: 0.3), Glide(to: (3.3, -2.5, 4), seconds: 0.5),
+        Glide(to: (3.3, -2.5, 1.5), seconds: 0.5), WaitUntilThere(2), Release, WaitUntilRest(2),
+        Grasp(\"Red\"), Glide(to: (-3, -3, 4), seconds: 0.3), Glide(to: (3.55, -2.5, 4), seconds: 0.5),
+        Glide(to: (3.55, -2.5, 2.5), seconds: 0.5), WaitUntilThere(2), Release, WaitUntilRest(2), Finish,";
+    let file = place("multiply_leaning.ron");
+    let text = format!("(setup: \"shipped:tablesetup/blocks.xml\", steps: [{steps}])");
+    fs::write(&file, text).unwrap();
+    let demo = record(file.to_str().unwrap(), "multiply_leaning");
+    let out = place("multiply_leaning_out");
+    let told = multiply(&demo, &out, &["--count", &count, "--sizes", "0.5"]);
+    for number in 0..count.parse().unwrap() {
+        let moved = moved_after(&out.join(format!("{number:04}")), 10);
+        assert!(moved.is_empty(), "{number}: {moved:?}");
+    }
+    assert!(told.contains("is not where it was put"), "{told}");
+}
+
+#[test]
+fn mechanisms_are_operated_again() {
+    for scenario in ["lock", "panel", "valve", "dispenser", "presets", "buttons"] {
+        let demo = record_shipped(scenario, &format!("multiply_{scenario}"));
+        let out = place(&format!("multiply_{scenario}_out"));
+        multiply(&demo, &out, &["--count", "3"]);
+        let expected = explained(Path::new(&demo));
+        let operations = |told: &str| -> Vec<_> {
+            let lines = told.lines().filter(|line| line.starts_with("- "));
+            let operations = lines.filter(|line| !line.starts_with("- On its way"));
+            operations.map(str::to_owned).collect()
+        };
+        for number in ["0000", "0001", "0002"] {
+            let told = explained(&out.join(number));
+            assert_eq!(
+                operations(&told),
+                operations(&expected),
+                "{scenario} {number}"
+            );
+        }
+    }
+}
+
+#[test]
+fn recordings_of_events_alone_are_multiplied() {
+    let originals = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/originals");
+    for year in ["2014", "2017"] {
+        let demo = originals.join(year).to_str().unwrap().to_owned();
+        let out = place(&format!("multiply_{year}"));
+        let output = tabletop(&["multiply", &demo, "--out", out.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("--setup"), "{}", stderr(&output));
+        let setup = originals.join(format!("{year}.xml"));
+        let options = ["--count", "3", "--setup", setup.to_str().unwrap()];
+        multiply(&demo, &out, &options);
+        replays_to_the_same_bytes(out.join("0002"));
+    }
 }
 
 #[test]

@@ -5,6 +5,9 @@
 
 mod collection;
 mod fingerprint;
+mod lasting;
+mod late;
+mod operated;
 mod performance;
 mod variation;
 mod way;
@@ -17,23 +20,27 @@ use std::{fmt, io, path::Path};
 use bevy::prelude::*;
 use serde_json::json;
 use tabletop_assembly::{IdAllocator, assemble};
+use tabletop_controller::Sight;
 use tabletop_core::{
     HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
     Table, WriteCommand as _,
 };
 use tabletop_kinematics::ModelError;
-use tabletop_planner::{PlanFailure, RobotBody, imitate};
+use tabletop_planner::{Before, PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{
     HandPictures, RecorderError, RecorderPlugin, RecordingReader, finish_recording,
 };
 use tabletop_robot::{DescriptionSource, RobotPlugin};
 use tabletop_storage::{Storage, Symlinks, read_regular_file};
-use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
+use tabletop_task::{Binding, Demonstration, Furniture, RequirementError, Requirements, Task};
 
 use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
 use crate::{beginning::scene_at_beginning, imitation::AppStage, robot_body::robot_body};
 use fingerprint::Fingerprint;
+use lasting::lasts;
+use late::LateObjects;
+use operated::Operated;
 use performance::perform;
 use variation::Varying;
 
@@ -42,6 +49,9 @@ use variation::Varying;
 pub struct Multiplication {
     shown: Demonstration,
     task: Task,
+    /// What the demonstration did besides moving objects, in order.
+    operated: Vec<Operated>,
+    late: LateObjects,
     requirements: Requirements,
     scene: SceneSpec,
     /// The robot, if it demonstrates instead of the hand.
@@ -88,7 +98,9 @@ pub enum MultiplyError {
     Requirements(#[from] RequirementError),
     #[error(transparent)]
     Robot(#[from] ModelError),
-    #[error("the recording moves nothing for good, so there is nothing to demonstrate again")]
+    #[error(
+        "the recording moves nothing for good and operates nothing, so there is nothing to demonstrate again"
+    )]
     NoTask,
     #[error("the recording does not contain the scene at its beginning")]
     NoScene,
@@ -124,23 +136,66 @@ impl Multiplication {
         seed: u64,
     ) -> Result<Self, MultiplyError> {
         let shown = Demonstration::of(recording)?;
+        let scene = scene_at_beginning(recording.session()).ok_or(MultiplyError::NoScene)?;
+        let operated = Operated::in_session(recording.session());
+        let folder = recording.folder();
+        Self::shown(folder, shown, Some(operated), scene, robot).map(|one| Self {
+            variation,
+            seed,
+            ..one
+        })
+    }
+
+    /// The same of a folder with nothing but events, as the original program writes them. They are completed from this scene, whose objects take
+    /// the roles.
+    ///
+    /// # Errors
+    /// As of [`of`](Self::of), or the objects do not fit.
+    pub fn of_events(
+        folder: &Path,
+        scene: SceneSpec,
+        robot: Option<RobotPlugin>,
+        variation: Variation,
+        seed: u64,
+    ) -> Result<Self, MultiplyError> {
+        let assembly = assemble(&scene, &mut IdAllocator::default());
+        let furniture = Furniture {
+            objects: assembly.objects,
+            joints: assembly.joints,
+        };
+        let shown = Demonstration::read(folder, &furniture)?;
+        Self::shown(folder, shown, None, scene, robot).map(|one| Self {
+            variation,
+            seed,
+            ..one
+        })
+    }
+
+    fn shown(
+        folder: &Path,
+        shown: Demonstration,
+        operated: Option<Vec<Operated>>,
+        scene: SceneSpec,
+        robot: Option<RobotPlugin>,
+    ) -> Result<Self, MultiplyError> {
         let task = Task::of(&shown);
-        if task.steps.is_empty() {
+        let operated = operated.unwrap_or_else(|| Operated::in_events(&task));
+        if task.steps.is_empty() && operated.is_empty() {
             return Err(MultiplyError::NoTask);
         }
-        let requirements = Requirements::read_for(&task, recording.folder())?;
-        let scene = scene_at_beginning(recording.session()).ok_or(MultiplyError::NoScene)?;
         let robot = robot.map(|plugin| RobotDemonstrator::new(plugin, &scene.table));
         Ok(Self {
+            operated,
+            late: LateObjects::of(&shown),
+            requirements: Requirements::read_for(&task, folder)?,
             shown,
             task,
-            requirements,
             scene,
             robot: robot.transpose()?,
-            variation,
+            variation: Variation::default(),
             hand_pictures: HandPictures::None,
-            seed,
-            recorded: fingerprint_of(recording.folder())?,
+            seed: 0,
+            recorded: fingerprint_of(folder)?,
         })
     }
 
@@ -150,7 +205,7 @@ impl Multiplication {
     /// They do not fit.
     pub fn with_scene(mut self, scene: SceneSpec) -> Result<Self, MultiplyError> {
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
-        self.task.bind(&self.requirements, &objects)?;
+        self.late.bind(&self.task, &self.requirements, &objects)?;
         if let Some(robot) = &mut self.robot {
             robot.body = robot_body(&robot.plugin, &scene.table)?;
         }
@@ -167,7 +222,8 @@ impl Multiplication {
         }
     }
 
-    /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at the end.
+    /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at
+    /// the end and go on to hold.
     ///
     /// # Errors
     /// It cannot be recorded there.
@@ -198,6 +254,7 @@ impl Multiplication {
     fn varying(&self) -> Varying<'_> {
         Varying {
             task: &self.task,
+            late: &self.late,
             requirements: &self.requirements,
             scene: &self.scene,
             body: self.robot.as_ref().map(|robot| &robot.body),
@@ -223,7 +280,7 @@ impl Multiplication {
         folder: &Path,
     ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
-        let binding = self.task.bind(&self.requirements, &objects)?;
+        let binding = self.late.bind(&self.task, &self.requirements, &objects)?;
         let mount = self.variation.mount(&scene.table, random);
         let seed = random.bits();
         let light = self.variation.light(random);
@@ -253,9 +310,10 @@ impl Multiplication {
         app.step(SETTLING);
         app.world_mut().write_command(RecordingCommand::Start);
         app.step(1);
+        let before = Before::anything(&Sight::of(app.world_mut()));
         let shown = self.act(&mut app, &binding, seed);
         finish_recording(&mut app).map_err(MultiplyError::Record)?;
-        Ok(shown)
+        Ok(shown.and_then(|()| lasts(&mut app, &self.task, &binding, &before)))
     }
 
     /// A fingerprint of all that decides the demonstrations besides variation and seed: the recording, its requirements, the objects, and a robot
@@ -272,7 +330,7 @@ impl Multiplication {
 
     fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, PlanFailure)> {
         let Some(RobotDemonstrator { body, .. }) = &self.robot else {
-            return perform(app, &self.shown, &self.task, binding);
+            return perform(app, &self.shown, &self.task, &self.operated, binding);
         };
         let mut stage = AppStage::new(app);
         let imitation = imitate(&mut stage, body, &self.task, binding, seed, |_| {});

@@ -209,6 +209,7 @@ mod tests {
             joints: Vec::new(),
             steps: Vec::new(),
             detours: Vec::new(),
+            pushes: Vec::new(),
             operations: Vec::new(),
             vocabulary: BTreeMap::new(),
         }

@@ -41,6 +41,8 @@ pub enum PlanFailure {
     NoRoom(String),
     /// The object was put down but is not where it belongs.
     Misplaced(String),
+    /// The demonstration does not show where the object belongs.
+    NoGoal(String),
     /// The robot was stopped from outside.
     Stopped,
 }
@@ -67,6 +69,7 @@ impl PlanFailure {
             | Self::Blocked { .. }
             | Self::NoRoom(_)
             | Self::Misplaced(_)
+            | Self::NoGoal(_)
             | Self::Stopped => false,
         }
     }
@@ -85,6 +88,7 @@ impl PlanFailure {
             | Self::Blocked { .. }
             | Self::NoRoom(_)
             | Self::Misplaced(_)
+            | Self::NoGoal(_)
             | Self::Stopped => 5,
         };
         match progress(&later) >= progress(&self) {
@@ -104,6 +108,7 @@ impl PlanFailure {
             | Self::Occupied { .. }
             | Self::NoRoom(_)
             | Self::Gone(_)
+            | Self::NoGoal(_)
             | Self::Stopped => true,
             Self::NoWay(_) | Self::NotHeld(_) | Self::Blocked { .. } | Self::Misplaced(_) => false,
         }
@@ -124,6 +129,7 @@ impl PlanFailure {
             Self::Blocked { .. } => "blocked",
             Self::NoRoom(_) => "no room",
             Self::Misplaced(_) => "misplaced",
+            Self::NoGoal(_) => "no goal",
             Self::Stopped => "stopped",
         }
     }
@@ -168,6 +174,10 @@ impl fmt::Display for PlanFailure {
             }
             Self::NoRoom(object) => write!(f, "there is no free place on the table for {object}"),
             Self::Misplaced(object) => write!(f, "{object} is not where it was put"),
+            Self::NoGoal(object) => write!(
+                f,
+                "{object} was let go in the air, so the demonstration does not show where it belongs"
+            ),
             Self::Stopped => write!(f, "the robot was stopped"),
         }
     }

@@ -58,6 +58,19 @@ pub struct Before {
     pub step: Option<Pose>,
 }
 
+impl Before {
+    /// Before anything is moved.
+    pub fn anything(sight: &Sight) -> Self {
+        let poses = sight.objects.iter();
+        Self {
+            beginning: poses
+                .map(|(id, object)| (id.clone(), object.pose))
+                .collect(),
+            step: None,
+        }
+    }
+}
+
 /// Largest distance from its goal, in units, at which an object is there: for goals relative to an object, and to a place.
 const NEAR: (f32, f32) = (0.15, 0.3);
 /// Largest angle from its goal, in rad.
@@ -185,6 +198,7 @@ fn stands(
             | Relation::Aside
             | Relation::Slid { .. }
             | Relation::Turned { .. }
+            | Relation::LetGo
             | Relation::Destroyed
             | Relation::Held => true,
         };
@@ -237,8 +251,8 @@ fn exact(
         let pose = frame * goal.pose;
         Candidate::new(pose, change_of_side(step, frame, pose))
     });
-    let is_level = |candidate: &Candidate| candidate.pose.location.z > 0.0;
-    let upright = poses.filter(is_level);
+    let is_above_table = |candidate: &Candidate| (candidate.pose * symmetry.centre).z > 0.0;
+    let upright = poses.filter(is_above_table);
     // A reference that looks the same upside down must not turn the goal upside down.
     let shown_height = goal.pose.location.length();
     let mut all: Vec<_> = upright.collect();
@@ -345,13 +359,7 @@ pub fn is_met(
 /// and its pose.
 pub fn goal_poses(task: &Task, binding: &Binding, sight: &Sight) -> Vec<(usize, String, Pose)> {
     let mut sight = sight.clone();
-    let poses = sight.objects.iter();
-    let mut before = Before {
-        beginning: poses
-            .map(|(id, object)| (id.clone(), object.pose))
-            .collect(),
-        step: None,
-    };
+    let mut before = Before::anything(&sight);
     let mut goals = Vec::new();
     for step in &task.steps {
         let Some(id) = binding.object(&step.object) else {

@@ -54,21 +54,13 @@ pub fn imitate(
     seed: u64,
     mut tell: impl FnMut(Doing),
 ) -> Imitation {
-    let beginning = stage
-        .sight()
-        .objects
-        .iter()
-        .map(|(id, object)| (id.clone(), object.pose));
     let mut imitator = Imitator {
         body,
         task,
         binding,
         seed,
         parked: Vec::new(),
-        before: Before {
-            beginning: beginning.collect(),
-            step: None,
-        },
+        before: Before::anything(stage.sight()),
         cleared: Vec::new(),
         outcome: Imitation::default(),
     };

@@ -36,7 +36,7 @@ pub enum Check {
         #[serde(default = "nearly_parallel")]
         within: f32,
     },
-    /// An object's lowest point is level with the highest point of another, and its origin is above it.
+    /// An object is at rest, its lowest point level with the highest point of another, and its origin above it.
     OnTopOf {
         /// The upper object's id.
         object: String,
@@ -46,7 +46,7 @@ pub enum Check {
         #[serde(default = "close")]
         within: f32,
     },
-    /// An object's lowest point is level with the table's top, and its origin is above it.
+    /// An object is at rest, its lowest point level with the table's top, and its origin above it.
     OnTable {
         /// Its id.
         object: String,
@@ -54,7 +54,7 @@ pub enum Check {
         #[serde(default = "close")]
         within: f32,
     },
-    /// An object is nowhere outside the upright cuboid around another.
+    /// An object is at rest, and nowhere outside the upright cuboid around another.
     Inside {
         /// The inner object's id.
         object: String,
@@ -134,6 +134,24 @@ impl Check {
         }
     }
 
+    /// Whether it is about where an object has come to rest, which must last.
+    pub(crate) const fn is_of_placement(&self) -> bool {
+        match self {
+            Self::OnTopOf { .. } | Self::OnTable { .. } | Self::Inside { .. } => true,
+            Self::Location { .. }
+            | Self::Rotation { .. }
+            | Self::AtRest(_)
+            | Self::AllAtRest
+            | Self::Exists(_)
+            | Self::Gone(_)
+            | Self::HeldBy { .. }
+            | Self::Free(_)
+            | Self::State { .. }
+            | Self::Fastened { .. }
+            | Self::Robot(_) => false,
+        }
+    }
+
     /// Compares with the world; an error names the expectation and the finding.
     pub(crate) fn judge(&self, seen: &Seen, stillness: &Stillness) -> Result<(), String> {
         match self {
@@ -144,19 +162,22 @@ impl Check {
                 within,
             } => is_turned(seen.object(object)?, *degrees, *within),
             Self::OnTopOf { object, of, within } => {
-                is_on_top(seen.object(object)?, seen.object(of)?, *within)
+                let object = seen.object(object)?;
+                is_on_top(object, seen.object(of)?, *within)?;
+                is_at_rest(object, stillness)
             }
-            Self::OnTable { object, within } => is_on_table(seen.object(object)?, seen, *within),
+            Self::OnTable { object, within } => {
+                let object = seen.object(object)?;
+                is_on_table(object, seen, *within)?;
+                is_at_rest(object, stillness)
+            }
             Self::Inside { object, of, within } => {
-                is_inside(seen.object(object)?, seen.object(of)?, *within)
+                let object = seen.object(object)?;
+                is_inside(object, seen.object(of)?, *within)?;
+                is_at_rest(object, stillness)
             }
             Self::Robot(check) => check.judge(seen),
-            Self::AtRest(object) => {
-                let object = seen.object(object)?;
-                stillness.is_at_rest(object).then_some(()).ok_or_else(|| {
-                    format!("expected `{}` at rest, found it moving", object.spec.id)
-                })
-            }
+            Self::AtRest(object) => is_at_rest(seen.object(object)?, stillness),
             Self::AllAtRest => match stillness.moving(seen) {
                 None => Ok(()),
                 Some(moving) => Err(format!("expected all at rest, found `{moving}` moving")),
@@ -177,6 +198,13 @@ impl Check {
 fn fault_of_tolerance(within: f32) -> Option<String> {
     let makes_sense = within.is_finite() && within >= 0.0;
     (!makes_sense).then(|| format!("expected a tolerance from 0, found {within}"))
+}
+
+fn is_at_rest(object: &ScenarioObject, stillness: &Stillness) -> Result<(), String> {
+    stillness
+        .is_at_rest(object)
+        .then_some(())
+        .ok_or_else(|| format!("expected `{}` at rest, found it moving", object.spec.id))
 }
 
 fn is_at(object: &ScenarioObject, at: Vec3, within: f32) -> Result<(), String> {
@@ -323,6 +351,18 @@ mod tests {
             ("OnTopOf(object: \"low\", of: \"high\")", "2.000 too low"),
             ("OnTable(object: \"high\")", "1.000 above"),
             ("Inside(object: \"high\", of: \"low\")", "1.000 outside"),
+            (
+                "OnTable(object: \"low\")",
+                "expected `low` at rest, found it moving",
+            ),
+            (
+                "OnTopOf(object: \"high\", of: \"low\")",
+                "expected `high` at rest, found it moving",
+            ),
+            (
+                "Inside(object: \"low\", of: \"low\")",
+                "expected `low` at rest, found it moving",
+            ),
             ("AllAtRest", "expected all at rest, found `low` moving"),
             ("AtRest(\"high\")", "found it moving"),
             ("Exists(\"x\")", "expected an object `x`, found none"),

@@ -14,10 +14,13 @@ const TREMBLE: (f32, f32) = (0.005, 0.005);
 /// Number of ticks without motion after which an object is at rest.
 const TICKS_TO_REST: u32 = TICKS_PER_SECOND / 2;
 
+/// Number of ticks after the last step for which checks of placement must go on to hold.
+pub(crate) const TICKS_TO_LAST: u64 = 3 * TICKS_PER_SECOND as u64;
+
 /// Number of ticks without motion after which a held object has arrived.
 const TICKS_TO_ARRIVE: u32 = TICKS_PER_SECOND / 5;
 
-/// The time for which every object has stayed in place.
+/// The time for which every object has stayed in place. Objects that are gone are kept: undo brings them back as they were.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stillness(BTreeMap<Entity, Stay>);
 
@@ -33,24 +36,19 @@ impl Stillness {
         if seen.paused {
             return;
         }
-        let before = std::mem::take(&mut self.0);
-        self.0 = seen
-            .objects
-            .iter()
-            .map(|object| {
-                let stay = match before.get(&object.entity) {
-                    Some(stay) if is_near(stay.at, object.pose) => Stay {
-                        ticks: stay.ticks.saturating_add(1),
-                        ..*stay
-                    },
-                    _ => Stay {
-                        at: object.pose,
-                        ticks: 0,
-                    },
-                };
-                (object.entity, stay)
-            })
-            .collect();
+        for object in &seen.objects {
+            let stay = match self.0.get(&object.entity) {
+                Some(stay) if is_near(stay.at, object.pose) => Stay {
+                    ticks: stay.ticks.saturating_add(1),
+                    ..*stay
+                },
+                Some(_) | None => Stay {
+                    at: object.pose,
+                    ticks: 0,
+                },
+            };
+            self.0.insert(object.entity, stay);
+        }
     }
 
     /// Passes over this many ticks in which nothing moves.

@@ -7,6 +7,7 @@ use crate::{
     Program, ScenarioError, Step,
     act::{StepProgress, StepState},
     program::{ProgramAction, ProgramStep},
+    rest::TICKS_TO_LAST,
     seen::Seen,
 };
 
@@ -20,6 +21,10 @@ pub struct ScenarioRun {
     /// The step whose command was given in the last tick.
     commanded: Option<usize>,
     ticks: u64,
+    /// The checks of placement since the last act, which must go on to hold.
+    lasting: Vec<usize>,
+    /// Number of ticks since the last step.
+    lasted: u64,
     outcome: Outcome,
 }
 
@@ -44,6 +49,8 @@ impl ScenarioRun {
             next: 0,
             commanded: None,
             ticks: 0,
+            lasting: Vec::new(),
+            lasted: 0,
             outcome: Outcome::Running,
         }
     }
@@ -77,7 +84,7 @@ impl ScenarioRun {
         }
         loop {
             let Some(ProgramStep { action, .. }) = self.program.steps.get(self.next) else {
-                self.outcome = Outcome::Done;
+                self.last(seen);
                 return None;
             };
             if self.ticks >= self.program.limit {
@@ -88,6 +95,11 @@ impl ScenarioRun {
             let command = match self.state.act(&action, seen) {
                 Err(what) => return self.fail(self.next, what),
                 Ok(StepProgress::Over) => {
+                    if let ProgramAction::Do(Step::Expect(check)) = &action
+                        && check.is_of_placement()
+                    {
+                        self.lasting.push(self.next);
+                    }
                     self.go_on();
                     continue;
                 }
@@ -103,8 +115,29 @@ impl ScenarioRun {
                 }
             };
             self.ticks += 1;
+            if command.as_ref().is_some_and(acts) {
+                self.lasting.clear();
+            }
             return command;
         }
+    }
+
+    /// Lets time pass after the last step until the checks of placement have lasted.
+    fn last(&mut self, seen: &Seen) {
+        if !self.lasting.is_empty() && self.lasted < TICKS_TO_LAST {
+            self.lasted += 1;
+            return;
+        }
+        for step in std::mem::take(&mut self.lasting) {
+            let judged = self.state.act(&self.program.steps[step].action, seen);
+            if let Err(what) = judged {
+                let seconds = TICKS_TO_LAST / u64::from(TICKS_PER_SECOND);
+                self.next = step;
+                self.fail(step, format!("{what}, {seconds} s after the last step"));
+                return;
+            }
+        }
+        self.outcome = Outcome::Done;
     }
 
     /// Fails for a reason that concerns all steps.
@@ -122,15 +155,16 @@ impl ScenarioRun {
         if self.outcome != Outcome::Running {
             return None;
         }
-        let step = self.program.steps.get(self.next);
-        let waits = step.map_or(0, |step| match &step.action {
-            ProgramAction::Do(step) => self.state.left_of_wait(step),
-            ProgramAction::SetScene(_) => 0,
-        });
+        if self.commanded.is_some() {
+            return Some(0);
+        }
         let left = self.program.limit.saturating_sub(self.ticks);
-        Some(match self.commanded {
-            Some(_) => 0,
-            None => waits.min(left),
+        let step = self.program.steps.get(self.next);
+        Some(match step.map(|step| &step.action) {
+            Some(ProgramAction::Do(step)) => self.state.left_of_wait(step).min(left),
+            Some(ProgramAction::SetScene(_)) => 0,
+            None if self.lasting.is_empty() => 0,
+            None => TICKS_TO_LAST - self.lasted,
         })
     }
 
@@ -140,7 +174,10 @@ impl ScenarioRun {
             return;
         }
         self.state.pass_over(ticks);
-        self.ticks += ticks;
+        match self.next < self.program.steps.len() {
+            true => self.ticks += ticks,
+            false => self.lasted += ticks,
+        }
     }
 
     fn go_on(&mut self) {
@@ -156,6 +193,18 @@ impl ScenarioRun {
             what,
         });
         None
+    }
+}
+
+/// Whether a command may change where things are.
+const fn acts(command: &SimCommand) -> bool {
+    match command {
+        SimCommand::Recording(_) | SimCommand::Clock(_) => false,
+        SimCommand::Scene(_)
+        | SimCommand::History(_)
+        | SimCommand::Hand(_)
+        | SimCommand::Mechanism(_)
+        | SimCommand::Robot(_) => true,
     }
 }
 
@@ -226,6 +275,41 @@ mod tests {
             Stage::new("Clear, Expect(Gone(\"x\")), Clear, Expect(Exists(\"x\")), Clear");
         stage.failure();
         assert_eq!((stage.run.steps_done(), stage.run.checks_passed()), (3, 1));
+    }
+
+    #[test]
+    fn a_placement_must_last_after_the_last_step() {
+        let steps = "WaitUntilRest(1), Expect(OnTopOf(object: \"high\", of: \"low\")), Finish";
+        let mut stage = Stage::new(steps);
+        assert!(stage.finish() > TICKS_TO_LAST);
+        assert_eq!(*stage.run.outcome(), Outcome::Done);
+
+        let mut stage = Stage::new(steps);
+        while stage.run.steps_done() < 3 {
+            stage.tick();
+        }
+        stage.tick();
+        stage.poses[1].location.z = 0.5;
+        let failure = stage.failure();
+        assert!(
+            failure.starts_with("s.ron:1:28: Expect(OnTopOf(object: \"high\", of: \"low\")): "),
+            "{failure}"
+        );
+        assert!(
+            failure.ends_with("1.000 too low, 3 s after the last step"),
+            "{failure}"
+        );
+        assert_eq!(stage.run.checks_passed(), 0);
+    }
+
+    #[test]
+    fn a_placement_need_not_last_once_something_acts() {
+        let mut stage = Stage::new(
+            "WaitUntilRest(1), Expect(OnTable(object: \"low\")), Clear, Expect(Exists(\"low\"))",
+        );
+        stage.finish();
+        assert_eq!(*stage.run.outcome(), Outcome::Done);
+        assert_eq!(stage.run.lasted, 0);
     }
 
     #[test]

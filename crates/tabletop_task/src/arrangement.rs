@@ -93,7 +93,10 @@ impl Arrangement {
         let holds = |other: &Placed| {
             let [low, high] = overlap(object.heights(), other.heights());
             let inner = object.pose.location.with_z(f32::midpoint(low, high));
-            high - low > TOUCH && other.encloses(inner) && object.is_within(other)
+            high - low > TOUCH
+                && other.encloses(inner)
+                && !other.holds(inner)
+                && object.is_within(other)
         };
         let all = self.others(id).filter(|(_, other)| holds(other));
         all.map(|(id, _)| id).collect()
@@ -113,6 +116,34 @@ impl Arrangement {
         };
         let all = self.others(id).filter(|(_, other)| is_around(other));
         all.map(|(id, _)| id).collect()
+    }
+
+    /// True if an object touches another one or the table.
+    pub(crate) fn touches_anything(&self, id: &str) -> bool {
+        let touches = |object: &Placed| self.others(id).any(|(_, other)| object.gap(other) < TOUCH);
+        self.is_on_table(id) || self.get(id).is_some_and(touches)
+    }
+
+    /// The objects that an object is around, and the one below it that it is on, for all that is known of their sizes: the vertical through
+    /// a post passes through the object's hole, and a support is below its centre.
+    pub(crate) fn presumed_bases(&self, id: &str) -> (Vec<&str>, Option<&str>) {
+        let Some(object) = self.get(id) else {
+            return (Vec::new(), None);
+        };
+        let is_lower = |other: &Placed| other.lowest() < object.pose.location.z;
+        let [low, high] = object.heights();
+        let posts = self.others(id).filter(|(_, other)| {
+            let axis = other.pose.location.with_z(f32::midpoint(low, high));
+            is_lower(other) && object.encloses(axis) && !object.holds(axis)
+        });
+        let top = |placed: &Placed| placed.heights()[1];
+        let below = self.others(id).filter(|(_, other)| {
+            top(other) < object.pose.location.z && object.shares_column_with(other)
+        });
+        let support = below.max_by(|(_, a), (_, b)| top(a).total_cmp(&top(b)));
+        let support = support.map(|(id, _)| id);
+        let others = posts.map(|(id, _)| id).filter(|id| Some(*id) != support);
+        (others.collect(), support)
     }
 }
 
@@ -181,10 +212,15 @@ impl Placed {
     /// True if every level line from a point meets it.
     fn encloses(&self, point: Vec3) -> bool {
         const WAYS: u16 = 16;
-        (0..WAYS).all(|i| {
-            let angle = TAU * (f32::from(i) + 0.5) / f32::from(WAYS);
+        // A line along the seam between two solids may miss both: one beside it does not.
+        const BESIDE: f32 = 0.01;
+        let meets = |angle: f32| {
             let way = Vec3::new(angle.cos(), angle.sin(), 0.0);
             self.solids.iter().any(|solid| solid.is_hit_by(point, way))
+        };
+        (0..WAYS).all(|i| {
+            let angle = TAU * (f32::from(i) + 0.5) / f32::from(WAYS);
+            meets(angle) || meets(angle + BESIDE)
         })
     }
 
@@ -311,5 +347,32 @@ mod tests {
         assert!(arrangement.posts("free").is_empty());
         assert!(arrangement.posts("peg").is_empty());
         assert!(arrangement.containers("ring").is_empty());
+    }
+
+    #[test]
+    fn a_round_ring_is_around_a_round_pole_however_it_is_turned() {
+        let color = Rgb::RED;
+        let ring = Shape::Ring {
+            radius_outer: 0.6,
+            radius_inner: 0.35,
+            zspan: 0.4,
+            sides: 32,
+            color,
+        };
+        let pole = Shape::Cylinder {
+            radius: 0.25,
+            yspan: 1.4,
+            color,
+        };
+        let upright = Pose::from_degrees(Vec3::Z * 0.7, Vec3::X * 90.0);
+        for degrees in 0..90_u8 {
+            let turn = Vec3::Z * f32::from(degrees) / 4.0;
+            let arrangement = Arrangement::new([
+                ("ring", &ring, Pose::from_degrees(Vec3::Z * 0.2, turn)),
+                ("pole", &pole, upright),
+            ]);
+            assert_eq!(arrangement.posts("ring"), ["pole"], "{degrees}");
+            assert!(arrangement.containers("ring").is_empty());
+        }
     }
 }

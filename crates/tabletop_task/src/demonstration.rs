@@ -28,6 +28,8 @@ pub struct Demonstration {
     pub start: SimTick,
     /// The last tick.
     pub end: SimTick,
+    /// True if only events are known, whose poses may be of a world without physics.
+    pub is_poses_only: bool,
 }
 
 /// An object of a demonstration.
@@ -212,9 +214,9 @@ impl Demonstration {
                     Occurrence::Loosen { bond, .. } => {
                         operate(OperationDeed::Loosen(bond.clone()));
                     }
-                    Occurrence::Cut { link, .. } => {
-                        let link = link.clone();
-                        operate(OperationDeed::Cut { link });
+                    Occurrence::Cut { blade, link, .. } => {
+                        let (blade, link) = (blade.clone(), link.clone());
+                        operate(OperationDeed::Cut { blade, link });
                     }
                     Occurrence::InitializeControl { .. } => {}
                 }

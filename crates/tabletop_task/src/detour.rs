@@ -7,6 +7,7 @@ use crate::{
     arrangement::Placed,
     demonstration::Demonstration,
     manipulation::{Ending, Manipulation},
+    operation::OperationDeed,
     symmetry::Symmetry,
 };
 
@@ -37,10 +38,10 @@ pub enum DetourKind {
     HandedOver,
 }
 
-/// Largest displacement, in units and rad, at which an object counts as in the same place.
-const SAME_PLACE: (f32, f32) = (0.05, 0.05);
-/// Largest displacement, in units, of an object that is only held.
-const HELD_STILL: f32 = 0.1;
+/// Largest displacement of an object that is still in its place, in units.
+pub(crate) const IN_PLACE: f32 = 0.15;
+/// Largest turn of an object that is still in its place, in rad.
+const UNTURNED: f32 = 0.05;
 
 /// Takes the detours out of the manipulations, which stay in order.
 pub fn fold(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Vec<Detour> {
@@ -60,12 +61,17 @@ fn fold_one(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Opt
     for i in 0..manipulations.len() {
         let manipulation = &manipulations[i];
         if manipulation.ending == Ending::Released && is_back(shown, manipulation) {
-            let kind = match farthest(shown, manipulation) < HELD_STILL {
+            let kind = match farthest(shown, manipulation) < IN_PLACE {
                 true => DetourKind::InPlace,
                 false => DetourKind::AwayAndBack,
             };
-            let manipulation = manipulations.remove(i);
-            return Some(detour(&manipulation, kind));
+            let back = manipulations.remove(i);
+            let mut later = manipulations[i..].iter_mut();
+            if let Some(next) = later.find(|next| next.object == back.object) {
+                // What is hardly moved several times may be moved by much.
+                next.from = back.from;
+            }
+            return Some(detour(&back, kind));
         }
         let rest = &manipulations[i + 1..];
         let next = rest
@@ -79,6 +85,7 @@ fn fold_one(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Opt
             && between
                 .iter()
                 .all(|other| is_apart(shown, manipulation, other))
+            && !is_operated(shown, manipulation, &manipulations[next])
         {
             let first = manipulations.remove(i);
             let last = &mut manipulations[next - 1];
@@ -105,7 +112,7 @@ fn is_back(shown: &Demonstration, manipulation: &Manipulation) -> bool {
     };
     let symmetry = Symmetry::of(&object.spec.shape);
     let (moved, turned) = symmetry.difference(manipulation.from, manipulation.to);
-    moved < SAME_PLACE.0 && turned < SAME_PLACE.1
+    moved < IN_PLACE && turned < UNTURNED
 }
 
 /// Largest distance of an object from where it was, in units.
@@ -117,6 +124,22 @@ fn farthest(shown: &Demonstration, manipulation: &Manipulation) -> f32 {
     poses
         .map(|pose| pose.location.distance(manipulation.from.location))
         .fold(0.0, f32::max)
+}
+
+/// True if an object was operated, fastened or loosened between its two manipulations.
+fn is_operated(shown: &Demonstration, one: &Manipulation, next: &Manipulation) -> bool {
+    let spec = shown.named(&one.object).map(|object| &object.spec);
+    let has_control = |control: &str| spec.is_some_and(|spec| spec.control(control).is_some());
+    let is_meant = |deed: &OperationDeed| match deed {
+        OperationDeed::Trigger { control } => has_control(control),
+        OperationDeed::PointTo { .. } | OperationDeed::Cut { .. } => false,
+        OperationDeed::Fasten(bond) | OperationDeed::Loosen(bond) => {
+            bond.guest == one.object || bond.host == one.object
+        }
+    };
+    let between = one.release..=next.grasp;
+    let mut operations = shown.operations.iter();
+    operations.any(|done| between.contains(&done.tick) && is_meant(&done.deed))
 }
 
 /// True if neither has made room for the other nor carries it: the places of one are not above or below those of the other.

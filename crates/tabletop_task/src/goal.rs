@@ -86,13 +86,14 @@ impl From<&Symmetry> for Freedom {
 }
 
 impl Goal {
-    /// The goal of a manipulation that establishes these relations; `None` if its object is removed or only held.
+    /// The goal of a manipulation that establishes these relations; `None` if its object is removed, only held, or still
+    /// falls.
     pub(crate) fn of(
         shown: &Demonstration,
         manipulation: &Manipulation,
         relations: &[Relation],
     ) -> Option<Self> {
-        if manipulation.ending != Ending::Released {
+        if manipulation.ending != Ending::Released || relations.first() == Some(&Relation::LetGo) {
             return None;
         }
         let object = shown.named(&manipulation.object)?;
@@ -122,9 +123,8 @@ impl Goal {
                 place = PlaceRange::Anywhere;
                 Reference::Table
             }
-            Some(Relation::OnTable | Relation::Destroyed | Relation::Held) | None => {
-                Reference::Table
-            }
+            Some(Relation::OnTable | Relation::LetGo | Relation::Destroyed | Relation::Held)
+            | None => Reference::Table,
         };
         let frame = match &reference {
             Reference::Table => Pose::IDENTITY,

@@ -153,5 +153,6 @@ fn is_carried(shown: &Demonstration, motions: &[ShownMotion], i: usize) -> bool 
 /// Whether an object stands on something at the end of a tick.
 fn stands(shown: &Demonstration, id: &str, tick: SimTick) -> bool {
     let arrangement = shown.at(tick);
-    arrangement.is_on_table(id) || !arrangement.supports(id).is_empty()
+    let is_around = || !arrangement.presumed_bases(id).0.is_empty();
+    arrangement.is_on_table(id) || !arrangement.supports(id).is_empty() || is_around()
 }

@@ -33,6 +33,9 @@ pub enum OperationDeed {
     Loosen(Bond),
     /// A chain link was cut.
     Cut {
+        /// Id of the first blade.
+        #[serde(default)]
+        blade: String,
         /// Its id.
         link: String,
     },
@@ -44,7 +47,7 @@ impl Operation {
         let what = match &self.deed {
             OperationDeed::Trigger { control } => format!("Trigger {control}"),
             OperationDeed::PointTo { part } => format!("Point to {part}"),
-            OperationDeed::Cut { link } => format!("Cut {link}"),
+            OperationDeed::Cut { link, .. } => format!("Cut {link}"),
             OperationDeed::Fasten(bond) => {
                 format!(
                     "Fasten {} to {}, step {}",

@@ -28,7 +28,10 @@ impl Demonstration {
         ticks_per_frame: u64,
         furniture: &Furniture,
     ) -> Self {
-        let mut shown = Self::default();
+        let mut shown = Self {
+            is_poses_only: true,
+            ..Self::default()
+        };
         shown.follow(segments, ticks_per_frame, true);
         let frames = segments.iter().flat_map(|segment| &segment.events);
         let last = frames.map(|event| event.frame).max().unwrap_or(0);

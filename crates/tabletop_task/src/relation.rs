@@ -8,6 +8,7 @@ use tabletop_geometry::Pose;
 use crate::{
     arrangement::{Arrangement, TOUCH},
     demonstration::Demonstration,
+    detour::IN_PLACE,
     manipulation::{Ending, Manipulation},
     rotation::angle_between,
     symmetry::Symmetry,
@@ -69,6 +70,8 @@ pub enum Relation {
         /// The angle, in degrees.
         degrees: f32,
     },
+    /// It was let go in the air, and the recording ended before it came to rest.
+    LetGo,
     /// It was removed.
     Destroyed,
     /// A hand still holds it at the end.
@@ -148,6 +151,7 @@ impl Relation {
             Self::Aside => "aside",
             Self::Slid { .. } => "slid",
             Self::Turned { .. } => "turned",
+            Self::LetGo => "let-go",
             Self::Destroyed => "destroyed",
             Self::Held => "held",
         }
@@ -163,9 +167,12 @@ impl Relation {
             | Self::AlignedWith { object }
             | Self::InPlaceOf { object }
             | Self::Slid { object, .. } => Some(object),
-            Self::OnTable | Self::Aside | Self::Turned { .. } | Self::Destroyed | Self::Held => {
-                None
-            }
+            Self::OnTable
+            | Self::Aside
+            | Self::Turned { .. }
+            | Self::LetGo
+            | Self::Destroyed
+            | Self::Held => None,
         }
     }
 }
@@ -177,7 +184,7 @@ const NEIGHBOURHOOD: f32 = 0.6;
 /// Largest angle, in rad, between aligned objects.
 const ALIGNED: f32 = 0.1;
 /// Largest displacement across the table, in units, and least angle, in rad, of an object that turns in place.
-const TURNED: (f32, f32) = (0.15, 0.05);
+const TURNED: (f32, f32) = (IN_PLACE, 0.05);
 
 /// The relations that a manipulation establishes, the most telling first. `later` are the manipulations after it.
 pub(crate) fn established(
@@ -215,6 +222,14 @@ pub(crate) fn established(
         })
         .collect();
     relations.extend(on);
+    if relations.is_empty() && !after.is_on_table(id) {
+        if shown.is_poses_only {
+            relations.extend(presumed(&after, id));
+        }
+        if relations.is_empty() && is_in_the_air(shown, &after, manipulation) {
+            return vec![Relation::LetGo];
+        }
+    }
     if relations.is_empty() {
         relations.extend(turned(shown, manipulation));
     }
@@ -236,6 +251,29 @@ pub(crate) fn established(
         relations.push(Relation::OnTable);
     }
     relations
+}
+
+/// The relations to what an object at rest is on, for all that is known of the sizes.
+fn presumed(after: &Arrangement, id: &str) -> Vec<Relation> {
+    let (posts, support) = after.presumed_bases(id);
+    let object = |id: &str| id.to_owned();
+    let around = posts.into_iter().map(|post| Relation::Around {
+        object: object(post),
+    });
+    let on = support.map(|support| Relation::On {
+        object: object(support),
+    });
+    around.chain(on).collect()
+}
+
+/// True if an object that lies on nothing has not come to rest before the end.
+fn is_in_the_air(shown: &Demonstration, after: &Arrangement, manipulation: &Manipulation) -> bool {
+    let id = &manipulation.object;
+    let is_jointed = shown.joints.iter().any(|joint| joint.objects.contains(id));
+    let track = shown.named(id).map(|object| &object.track);
+    let is_still = track.is_some_and(|track| track.is_still_at(manipulation.rest));
+    let has_rested = manipulation.rest < shown.end && !shown.is_poses_only;
+    !is_jointed && !has_rested && !(is_still && after.touches_anything(id))
 }
 
 /// The joint along which an object slides, with the greatest displacement that it allows.

@@ -36,6 +36,7 @@ fn sentence(task: &Task, step: &TaskStep) -> String {
     let deed = match step.relations.first() {
         Some(Relation::Destroyed) => format!("remove {object}"),
         Some(Relation::Held) => format!("pick up {object}"),
+        Some(Relation::LetGo) => format!("let go of {object} in the air"),
         Some(Relation::Turned { axis, degrees }) => match step.tipping {
             Some(tipping) => tipped(tipping, &object),
             None => format!("turn {object} {}", turn(*axis, *degrees)),
@@ -130,6 +131,7 @@ fn place(task: &Task, step: &TaskStep) -> String {
             | Relation::AlignedWith { .. }
             | Relation::Slid { .. }
             | Relation::Turned { .. }
+            | Relation::LetGo
             | Relation::Destroyed
             | Relation::Held,
         )
@@ -192,7 +194,7 @@ fn turn(axis: Vec3, degrees: f32) -> String {
 }
 
 /// A location on the table, in words.
-fn spot(location: Vec3) -> String {
+pub(crate) fn spot(location: Vec3) -> String {
     let short = |x: f32| {
         let rounded = (x * 10.0).round() / 10.0 + 0.0;
         format!("{rounded}")

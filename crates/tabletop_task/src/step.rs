@@ -24,7 +24,7 @@ pub struct TaskStep {
     pub meanwhile: bool,
     /// The relations that it establishes, the most telling first.
     pub relations: Vec<Relation>,
-    /// The goal of the object; `None` if it is removed or only picked up.
+    /// The goal of the object; `None` if it is removed, only picked up, or let go in the air.
     pub goal: Option<Goal>,
     /// The way in which it comes to lie on another of its sides, if it does.
     pub tipping: Option<Tipping>,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 use tabletop_core::{JointSpec, Table};
 
-use crate::{detour::Detour, operation::Operation, role::Role, step::TaskStep};
+use crate::{detour::Detour, operation::Operation, push::Push, role::Role, step::TaskStep};
 
 /// The task that a demonstration teaches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,6 +20,9 @@ pub struct Task {
     pub steps: Vec<TaskStep>,
     /// Detours that do not matter.
     pub detours: Vec<Detour>,
+    /// Objects that others moved on their way, for good.
+    #[serde(default)]
+    pub pushes: Vec<Push>,
     /// Objects that were operated, pointed to, fastened and loosened, in the order of the demonstration.
     #[serde(default)]
     pub operations: Vec<Operation>,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use tabletop_core::Shape;
 use tabletop_geometry::{PlacedSolid, Pose};
 
-use crate::symmetry::Symmetry;
+use crate::symmetry::{Symmetry, Turns};
 
 /// The way in which an object comes to lie on another of its sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,6 +32,10 @@ impl Tipping {
         let above = |pose: Pose| pose.rotation.inverse() * Vec3::Z;
         let was_above = above(from);
         let symmetry = Symmetry::of(shape);
+        if matches!(symmetry.turns, Turns::Any) {
+            // A ball has no sides.
+            return None;
+        }
         let alike = symmetry.variants(to);
         if alike
             .iter()
@@ -111,6 +115,10 @@ mod tests {
             span: Vec3::ONE,
             color: Rgb::RED,
         };
+        let ball = Shape::Sphere {
+            radius: 0.5,
+            color: Rgb::RED,
+        };
         for (degrees, expected) in [
             (Vec3::X * 180.0, Some(Tipping::TurnedOver)),
             (Vec3::Y * 90.0, Some(Tipping::OntoAnotherSide)),
@@ -119,6 +127,7 @@ mod tests {
         ] {
             assert_eq!(tipped(&container, degrees), expected, "{degrees}");
             assert_eq!(tipped(&cube, degrees), None, "{degrees}");
+            assert_eq!(tipped(&ball, degrees), None, "{degrees}");
         }
     }
 }

@@ -5,6 +5,13 @@ use tabletop_geometry::Pose;
 
 use crate::rotation::angle_between;
 
+/// Number of ticks for which something that is at rest has stayed in place.
+const STILL_TICKS: u64 = 15;
+/// Largest displacement of something that stays in place, in units.
+const STILL_LENGTH: f32 = 0.01;
+/// Largest turn of something that stays in place, in rad.
+const STILL_ANGLE: f32 = 0.01;
+
 /// The poses of an object over time; each holds until the next one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track(Vec<(SimTick, Pose)>);
@@ -25,6 +32,24 @@ impl Track {
         Some(*pose)
     }
 
+    /// The pose at the end of a tick on an even way from each pose to the next, which takes at most this many ticks.
+    pub fn smooth_at(&self, tick: SimTick, most: u64) -> Option<Pose> {
+        let known = self.0.partition_point(|(since, _)| *since <= tick);
+        let now = self.at(tick)?;
+        let Some((next, to)) = self.0.get(known).filter(|_| known > 0) else {
+            return Some(now);
+        };
+        let begun = self.0[known - 1].0.0.max(next.0.saturating_sub(most));
+        if tick.0 <= begun {
+            return Some(now);
+        }
+        let part = (tick.0 - begun) as f32 / (next.0 - begun) as f32;
+        Some(Pose::new(
+            now.location.lerp(to.location, part),
+            now.rotation.slerp(to.rotation, part).normalize(),
+        ))
+    }
+
     /// Its poses, and from when on it had each.
     pub(crate) fn entries(&self) -> impl Iterator<Item = (SimTick, Pose)> {
         self.0.iter().copied()
@@ -42,9 +67,6 @@ impl Track {
 
     /// The first tick, not before `from`, after which the object stays in place for a quarter of a second; `until` at the latest.
     pub fn rest_after(&self, from: SimTick, until: SimTick) -> SimTick {
-        const STILL_TICKS: u64 = 15;
-        const STILL_LENGTH: f32 = 0.01;
-        const STILL_ANGLE: f32 = 0.01;
         let mut rest = from;
         let changes = self
             .0
@@ -57,13 +79,24 @@ impl Track {
             if tick.0 > rest.0 + STILL_TICKS {
                 break;
             }
-            let moved = pose.location.distance(still.location);
-            if moved > STILL_LENGTH || angle_between(pose.rotation, still.rotation) > STILL_ANGLE {
+            if !is_near(*pose, still) {
                 (rest, still) = (*tick, *pose);
             }
         }
         SimTick(rest.0 + STILL_TICKS).min(until)
     }
+
+    /// True if the object has stayed in place for a quarter of a second.
+    pub(crate) fn is_still_at(&self, tick: SimTick) -> bool {
+        let before = self.at(SimTick(tick.0.saturating_sub(STILL_TICKS)));
+        let pair = before.zip(self.at(tick));
+        pair.is_some_and(|(before, now)| is_near(before, now))
+    }
+}
+
+fn is_near(a: Pose, b: Pose) -> bool {
+    a.location.distance(b.location) <= STILL_LENGTH
+        && angle_between(a.rotation, b.rotation) <= STILL_ANGLE
 }
 
 #[cfg(test)]
@@ -82,6 +115,25 @@ mod tests {
             [0, 10, 19, 20, 99].map(|tick| track.at(SimTick(tick)).map(|pose| pose.location.x));
         assert_eq!(found, [1.0, 1.0, 1.0, 3.0, 3.0].map(Some));
         assert_eq!(Track::default().at(SimTick(0)), None);
+    }
+
+    #[test]
+    fn a_smooth_way_takes_no_longer_than_a_frame() {
+        let mut track = Track::default();
+        for (tick, x) in [(0, 0.0), (30, 1.5), (45, 3.0)] {
+            track.push(SimTick(tick), Pose::at(Vec3::X * x));
+        }
+        for (tick, x) in [
+            (0, 0.0),
+            (15, 0.0),
+            (20, 0.5),
+            (30, 1.5),
+            (35, 2.0),
+            (99, 3.0),
+        ] {
+            let found = track.smooth_at(SimTick(tick), 15).unwrap().location.x;
+            assert!((found - x).abs() < 1e-5, "{tick}: {found}");
+        }
     }
 
     #[test]

@@ -15,6 +15,7 @@ use crate::{
     manipulation::{Ending, Manipulation},
     noun::Nouns,
     order::partial_order,
+    push::pushes,
     relation::{Relation, established},
     requirement::Requirements,
     role::Role,
@@ -47,6 +48,7 @@ impl Task {
     /// The task of a demonstration.
     pub fn of(shown: &Demonstration) -> Self {
         let mut manipulations = Manipulation::all(shown);
+        let pushes = pushes(shown, &manipulations);
         let detours = fold(shown, &mut manipulations);
         let relations: Vec<_> = (0..manipulations.len())
             .map(|i| established(shown, &manipulations[i], &manipulations[i + 1..]))
@@ -76,6 +78,7 @@ impl Task {
             joints: shown.joints.clone(),
             steps,
             detours,
+            pushes,
             operations: shown.operations.clone(),
             vocabulary: vocabulary(shown),
         };

@@ -13,10 +13,15 @@ use tabletop_task::{
     Binding, Demonstration, PlaceRange, Reference, Relation, Task, TaskStep, angle_between,
 };
 
-use super::way::{CarriedWay, WayPoint};
+use super::{
+    operated::Operated,
+    way::{CarriedWay, WayPoint},
+};
 
 /// Limits on the number of ticks between a release and the next grasp, which is otherwise as demonstrated.
 const PAUSE: (u64, u64) = (15, 60);
+/// Largest number of ticks for which a grasp or an operation follows another operation later, as demonstrated.
+const MOST_AFTER_OPERATION: u64 = 600;
 /// Number of ticks without motion after which a held object has arrived.
 const STILL: u32 = 4;
 /// Largest number of ticks that a hand waits for that.
@@ -35,24 +40,20 @@ pub(super) fn perform(
     app: &mut App,
     shown: &Demonstration,
     task: &Task,
+    operated: &[Operated],
     binding: &Binding,
 ) -> Result<(), (usize, PlanFailure)> {
     let sight = Sight::of(app.world_mut());
-    let beginning = sight
-        .objects
-        .iter()
-        .map(|(id, object)| (id.clone(), object.pose));
     let mut performance = Performance {
         binding,
-        before: Before {
-            beginning: beginning.collect(),
-            step: None,
-        },
+        before: Before::anything(&sight),
         acts: acts(shown, task)?,
+        operations: operated.iter().map(|operated| (operated, None)).collect(),
         app,
     };
     while !performance.is_over() {
         performance.begin_due_acts()?;
+        performance.operate();
         performance.move_hands();
         performance.app.step(1);
         performance.look()?;
@@ -67,6 +68,8 @@ struct Performance<'a> {
     before: Before,
     /// The steps, in the order in which their objects were grasped.
     acts: Vec<StepPerformance<'a>>,
+    /// What else was done, and when it has been done again.
+    operations: Vec<(&'a Operated, Option<SimTick>)>,
 }
 
 /// A step in its new performance.
@@ -119,16 +122,62 @@ fn acts<'a>(
 impl Performance<'_> {
     fn is_over(&self) -> bool {
         let is_done = |act: &StepPerformance| matches!(act.progress, CarryProgress::Done(_));
-        self.acts.iter().all(is_done)
+        self.acts.iter().all(is_done) && self.operations.iter().all(|(_, done)| done.is_some())
     }
 
     fn now(&self) -> SimTick {
         *self.app.world().resource::<SimTick>()
     }
 
+    /// True if all that was done before this tick of the demonstration has been done, and as long ago.
+    fn has_operated_before(&self, tick: SimTick) -> bool {
+        let now = self.now().0;
+        let mut before = self.operations.iter().filter(|(one, _)| one.tick < tick);
+        before.all(|(one, done)| {
+            let pause = (tick.0 - one.tick.0).min(MOST_AFTER_OPERATION);
+            done.is_some_and(|done| now - done.0 >= pause)
+        })
+    }
+
+    /// Does what else is due.
+    fn operate(&mut self) {
+        let now = self.now();
+        while let Some(next) = self.operations.iter().position(|(_, done)| done.is_none()) {
+            let operated = self.operations[next].0;
+            if !self.is_operation_due(operated) {
+                return;
+            }
+            self.operations[next].1 = Some(now);
+            let command = operated.bound(self.binding);
+            self.app.world_mut().write_command(command);
+        }
+    }
+
+    /// True if the steps and operations before one are as far along as they were.
+    fn is_operation_due(&self, operated: &Operated) -> bool {
+        let (now, tick) = (self.now().0, operated.tick);
+        let mut begun = self.acts.iter().filter(|act| act.step.grasp < tick);
+        self.has_operated_before(tick)
+            && begun.all(|act| match &act.progress {
+                CarryProgress::Waiting => false,
+                CarryProgress::Carrying { way, next, .. } => {
+                    let passed = tick.0 - act.step.grasp.0;
+                    tick <= act.step.release
+                        && way.get(*next).is_none_or(|point| point.shown > passed)
+                }
+                CarryProgress::Done(since) => {
+                    let pause = tick.0.saturating_sub(act.step.release.0);
+                    now - since.0 >= pause.min(PAUSE.1)
+                }
+            })
+    }
+
     /// True if the steps grasped earlier are as far along as they were when this one's object was grasped.
     fn is_due(&self, i: usize) -> bool {
         let (now, own) = (self.now().0, self.acts[i].step);
+        if !self.has_operated_before(own.grasp) {
+            return false;
+        }
         self.acts[..i].iter().all(|earlier| {
             let is_meanwhile = earlier.step.release > own.grasp;
             match &earlier.progress {
@@ -245,6 +294,10 @@ impl Performance<'_> {
             let Some(moment) = way.get(*next) else {
                 if *still < STILL && *waited < MOST_WAITING {
                     *waited += 1;
+                    continue;
+                }
+                let mut pending = self.operations.iter().filter(|(_, done)| done.is_none());
+                if pending.any(|(one, _)| one.tick <= act.step.release) {
                     continue;
                 }
                 let first = act.step.relations.first();

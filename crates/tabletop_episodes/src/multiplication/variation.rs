@@ -9,8 +9,9 @@ use tabletop_core::{
 };
 use tabletop_geometry::{NAMED_COLORS, PlacedSolid, Pose, Rgb};
 use tabletop_planner::RobotBody;
-use tabletop_task::{PlaceRange, Reference, Requirements, Task};
+use tabletop_task::{PlaceRange, Reference, Relation, Requirements, Task};
 
+use super::late::LateObjects;
 use crate::imitation::scattered;
 
 /// The variation besides the places of objects.
@@ -81,6 +82,7 @@ impl Variation {
 /// A demonstration that is to be varied.
 pub(super) struct Varying<'a> {
     pub task: &'a Task,
+    pub late: &'a LateObjects,
     pub requirements: &'a Requirements,
     pub scene: &'a SceneSpec,
     /// The robot, if one has to reach everything.
@@ -137,7 +139,7 @@ impl Varying<'_> {
     /// True if all goals of the task are on the table when objects are where this scene puts them.
     fn is_on_table(&self, scene: &SceneSpec) -> bool {
         let objects = assemble(scene, &mut IdAllocator::default()).objects;
-        let Ok(binding) = self.task.bind(self.requirements, &objects) else {
+        let Ok(binding) = self.late.bind(self.task, self.requirements, &objects) else {
             return false;
         };
         let half = Vec3::new(scene.table.xspan, scene.table.yspan, 0.0) / 2.0;
@@ -149,7 +151,7 @@ impl Varying<'_> {
         let mut now = std::collections::BTreeMap::new();
         self.task.steps.iter().all(|step| {
             let Some((shape, start)) = beginning(&step.object) else {
-                return false;
+                return self.late.contains(&step.object);
             };
             let Some(goal) = &step.goal else {
                 return true;
@@ -165,7 +167,8 @@ impl Varying<'_> {
                 Reference::PlaceOf { object } => beginning(object).map(|(_, pose)| pose),
             };
             let Some(frame) = frame else {
-                return false;
+                let other = step.relations.first().and_then(Relation::object);
+                return other.is_some_and(|other| self.late.contains(other));
             };
             let pose = frame * goal.pose;
             now.insert(step.object.as_str(), pose);

@@ -3,6 +3,7 @@
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Hand, Shape, SimTick};
 use tabletop_geometry::{PlacedSolid, Pose, Primitive};
+use tabletop_recorder::TICKS_PER_FRAME;
 use tabletop_task::{Demonstration, HandDeed, Reference, TaskStep, angle_between};
 
 /// The way on which the object of a step was carried.
@@ -23,6 +24,8 @@ pub(super) struct WayPoint {
     pub pose: Pose,
     /// The hand that takes it.
     pub taken_by: Option<Hand>,
+    /// Number of ticks since the grasp in the demonstration.
+    pub shown: u64,
 }
 
 /// Distance from the first place, seen from above, within which an object counts as being lifted or lowered, in units.
@@ -40,7 +43,10 @@ impl CarriedWay {
         let track = &shown.named(&step.object)?.track;
         let first = step.grasp.0.saturating_sub(1);
         let poses: Option<Vec<_>> = (first..=step.release.0)
-            .map(|tick| track.at(SimTick(tick)))
+            .map(|tick| match shown.is_poses_only {
+                true => track.smooth_at(SimTick(tick), TICKS_PER_FRAME),
+                false => track.at(SimTick(tick)),
+            })
             .collect();
         let poses = poses?;
         let taken = shown.acts.iter().filter_map(|act| {
@@ -122,12 +128,14 @@ impl CarriedWay {
                 moments.extend(between(last, pose, longest).map(|pose| WayPoint {
                     pose,
                     taken_by: None,
+                    shown: (i as u64).saturating_sub(1),
                 }));
             }
             let taken_by = self.hands.iter().skip(1).find(|(after, _)| *after == i);
             moments.push(WayPoint {
                 pose,
                 taken_by: taken_by.map(|(_, hand)| *hand),
+                shown: i as u64,
             });
         }
         moments

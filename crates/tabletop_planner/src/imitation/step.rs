@@ -52,6 +52,7 @@ impl Imitator<'_> {
                     transfer.pick_up(stage)
                 })
             }
+            Some(Relation::LetGo) => Err(PlanFailure::NoGoal(id.to_owned())),
             Some(Relation::Destroyed) => self.clear(stage, id, i),
             Some(Relation::Aside) => {
                 let near = step
