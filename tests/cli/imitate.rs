@@ -1,8 +1,13 @@
 //! `tabletop imitate`: the robot imitates demonstrations.
 
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::{
+    fs,
+    sync::atomic::{AtomicU32, Ordering},
+};
 
-use crate::support::{place, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop};
+use crate::support::{
+    place, record, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop,
+};
 
 /// A recording of a shipped scenario, in a folder of its own.
 pub fn recorded(scenario: &str) -> String {
@@ -45,6 +50,62 @@ fn a_wall_is_built() {
 #[test]
 fn a_chest_is_opened_filled_and_closed() {
     is_done(&recorded("chest"), &[]);
+}
+
+/// Records these steps on a table with these objects.
+fn shown(name: &str, objects: &str, steps: &str) -> String {
+    let [task, file] = ["xml", "ron"].map(|ending| place(&format!("imitate_{name}.{ending}")));
+    let namespace = "http://synapse.cs.umd.edu/tabletop-xml";
+    let text =
+        format!("<tabletop xmlns=\"{namespace}\" xspan=\"20\" yspan=\"12\">{objects}</tabletop>");
+    fs::write(&task, text).unwrap();
+    let setup = task.file_name().unwrap();
+    let text = format!(
+        "(setup: {setup:?}, steps: [WaitUntilRest(2), Start, {steps} WaitUntilRest(3), Finish])"
+    );
+    fs::write(&file, text).unwrap();
+    record(file.to_str().unwrap(), &format!("imitate_{name}"))
+}
+
+/// A block that is lifted, turned about Y, carried and put down.
+fn carried(id: &str, from: f32, degrees: f32, to: (f32, f32)) -> String {
+    let (x, z) = to;
+    format!(
+        "Grasp({id:?}), Glide(to: ({from}, -3, 4), seconds: 0.5), Turn(axis: Y, degrees: {degrees}),
+         Glide(to: ({x}, -3, 4), seconds: 1), Glide(to: ({x}, -3, {z}), seconds: 0.8), WaitUntilThere(1),
+         Release, WaitUntilRest(3),"
+    )
+}
+
+#[test]
+fn a_lying_peg_is_stood_up_in_a_hole() {
+    let objects = r#"
+        <composite id="Base" location="(2.5,-3,0.4)" mass="0">
+          <block location="(0,0.75,0)" xspan="2.5" yspan="0.6" zspan="0.8" color="brown"/>
+          <block location="(0,-0.75,0)" xspan="2.5" yspan="0.6" zspan="0.8" color="brown"/>
+          <block location="(0.85,0,0)" xspan="0.8" yspan="0.9" zspan="0.8" color="brown"/>
+          <block location="(-0.85,0,0)" xspan="0.8" yspan="0.9" zspan="0.8" color="brown"/>
+        </composite>
+        <block id="Peg" location="(-2.5,-3,0.35)" xspan="2.4" yspan="0.7" zspan="0.7" color="red"/>"#;
+    let demo = shown("peg", objects, &carried("Peg", -2.5, 90.0, (2.5, 1.2)));
+    is_done(&demo, &[]);
+    for seed in ["1", "2", "3"] {
+        is_done(&demo, &["--seed", seed]);
+    }
+}
+
+#[test]
+fn two_blocks_are_put_side_by_side_into_a_bin() {
+    let objects = r#"
+        <box id="Bin" location="(0,-3,0.6)" xspan="2.6" yspan="1.8" zspan="1.2" thickness="0.15" color="brown"/>
+        <block id="Red" location="(-4,-3,0.5)" xspan="1" yspan="1" zspan="1" color="red"/>
+        <block id="Green" location="(4,-3,0.5)" xspan="1" yspan="1" zspan="1" color="green"/>"#;
+    let steps =
+        carried("Red", -4.0, 0.0, (-0.55, 0.65)) + &carried("Green", 4.0, 0.0, (0.55, 0.65));
+    let demo = shown("bin", objects, &steps);
+    for seed in ["2", "3", "6"] {
+        is_done(&demo, &["--seed", seed]);
+    }
 }
 
 #[test]

@@ -98,9 +98,7 @@ pub enum MultiplyError {
     Requirements(#[from] RequirementError),
     #[error(transparent)]
     Robot(#[from] ModelError),
-    #[error(
-        "the recording moves nothing for good and operates nothing, so there is nothing to demonstrate again"
-    )]
+    #[error("the recording moves nothing for good, so there is nothing to demonstrate again")]
     NoTask,
     #[error("the recording does not contain the scene at its beginning")]
     NoScene,
@@ -180,7 +178,7 @@ impl Multiplication {
     ) -> Result<Self, MultiplyError> {
         let task = Task::of(&shown);
         let operated = operated.unwrap_or_else(|| Operated::in_events(&task));
-        if task.steps.is_empty() && operated.is_empty() {
+        if task.steps.is_empty() {
             return Err(MultiplyError::NoTask);
         }
         let robot = robot.map(|plugin| RobotDemonstrator::new(plugin, &scene.table));

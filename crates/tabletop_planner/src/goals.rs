@@ -122,7 +122,14 @@ pub(crate) fn candidates(
     if found.iter().any(|candidate| !candidate.is_tipped()) {
         found.retain(|candidate| !candidate.is_tipped());
     } else if is_inside(step) {
-        found = found.iter().map(|goal| untipped(object, *goal)).collect();
+        // What fits as it lies now need not be tipped.
+        let lying = found.iter().map(|goal| untipped(object, *goal));
+        let lying: Vec<_> = lying
+            .filter(|goal| fits_inside(step, binding, sight, goal.pose))
+            .collect();
+        if !lying.is_empty() {
+            found = lying;
+        }
     }
     let least = found
         .iter()
@@ -157,6 +164,20 @@ pub(crate) fn candidates(
 pub(crate) fn is_inside(step: &TaskStep) -> bool {
     let goal = step.goal.as_ref();
     goal.is_some_and(|goal| goal.place == PlaceRange::Inside)
+}
+
+/// True if a step's object in this pose is in its container, and in none of the walls.
+pub(crate) fn fits_inside(step: &TaskStep, binding: &Binding, sight: &Sight, pose: Pose) -> bool {
+    let container = step.relations.first().and_then(Relation::object);
+    let container = container.and_then(|role| binding.object(role));
+    let others = sight.objects.keys().map(String::as_str);
+    let others: Vec<_> = others.filter(|other| Some(*other) != container).collect();
+    let object = binding.object(&step.object);
+    let is_in = |id: &str| {
+        let arrangement = sight.arrangement_with(id, pose);
+        container.is_some_and(|container| arrangement.containers(id).contains(&container))
+    };
+    object.is_some_and(|id| sight.occupant(id, pose, &others).is_none() && is_in(id))
 }
 
 /// A goal at which an object is no lower, but as it lies now.
@@ -384,14 +405,17 @@ pub(crate) fn bound<'b>(binding: &'b Binding, role: &str) -> Result<&'b str, Pla
         .ok_or_else(|| PlanFailure::Gone(role.to_owned()))
 }
 
-/// Places around a pose where a container is searched for room.
-pub(crate) fn inside(pose: Pose, by: f32) -> impl Iterator<Item = Candidate> {
+/// Places around a goal where a container is searched for room.
+pub(crate) fn inside(goal: Candidate, by: f32) -> impl Iterator<Item = Candidate> {
     let steps = [0.0, 1.0, -1.0, 2.0, -2.0];
     steps.into_iter().flat_map(move |x| {
         steps.into_iter().map(move |y| {
             let aside = Vec3::new(x, y, 0.0) * by;
-            let there = Pose::new(pose.location + aside, pose.rotation);
-            Candidate::new(there, aside.length())
+            Candidate {
+                pose: Pose::new(goal.pose.location + aside, goal.pose.rotation),
+                cost: aside.length(),
+                ..goal
+            }
         })
     })
 }

@@ -178,7 +178,7 @@ impl Imitator<'_> {
         }
         if self.outcome.failure.is_none() {
             self.put_all_back(stage)?;
-            self.outcome.failure = undone(self.task, self.binding, stage.sight(), &self.before);
+            self.outcome.failure = self.redo_undone(stage)?;
         }
         let is_held = |step: &TaskStep| step.relations.first() == Some(&Relation::Held);
         if !self.task.steps.iter().any(is_held) {
@@ -187,6 +187,25 @@ impl Imitator<'_> {
             }
         }
         wait(stage, 30)
+    }
+
+    /// Does steps again that later ones have undone. Returns the failure of one that is still undone in the end.
+    fn redo_undone(
+        &mut self,
+        stage: &mut dyn PlanningStage,
+    ) -> Result<Option<(usize, PlanFailure)>, Stopped> {
+        for _ in 0..TRIES {
+            let undone = undone(self.task, self.binding, stage.sight(), &self.before);
+            let Some((number, PlanFailure::Misplaced(_))) = undone else {
+                return Ok(undone);
+            };
+            self.outcome.corrections += 1;
+            if self.do_step(stage, number - 1) == Err(PlanFailure::Stopped) {
+                return Err(Stopped);
+            }
+            wait(stage, 10)?;
+        }
+        Ok(undone(self.task, self.binding, stage.sight(), &self.before))
     }
 
     /// The first step whose object no arm can take where it stands in the beginning. Objects on, in or around others may be elsewhere by then.

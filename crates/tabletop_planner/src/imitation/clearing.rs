@@ -9,7 +9,7 @@ use super::{Imitator, slider::Slider};
 use crate::{
     failure::PlanFailure,
     free_spot::free_spots,
-    goals::{Candidate, candidates, is_inside},
+    goals::{Candidate, candidates, fits_inside, is_inside},
     sight::{Arranged as _, Solids as _, is_above},
     stage::PlanningStage,
 };
@@ -28,7 +28,16 @@ impl Imitator<'_> {
         step: &TaskStep,
         id: &str,
     ) -> Result<Option<String>, PlanFailure> {
-        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let goals = match is_inside(step) {
+            // All in the container.
+            true => {
+                let places = self.places_inside(sight, step)?.into_iter();
+                places
+                    .filter(|place| fits_inside(step, self.binding, sight, place.pose))
+                    .collect()
+            }
+            false => candidates(step, self.binding, sight, &self.before)?,
+        };
         let others = step.relations.iter().filter_map(Relation::object);
         let meant: Vec<_> = others
             .filter_map(|role| self.binding.object(role))

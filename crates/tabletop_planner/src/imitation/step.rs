@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use tabletop_controller::Sight;
-use tabletop_geometry::Pose;
+use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_task::{Relation, TaskStep};
 
 use super::{Imitator, slider::Slider};
@@ -18,6 +18,8 @@ use crate::{
 const ABOVE_RIM: f32 = 0.1;
 /// Cost of letting something fall, so that it is put down where that is possible.
 const COST_OF_FALL: f32 = 10.0;
+/// Cost of leaving no room for an object that a later step puts into a container: rather let it fall.
+const COST_OF_CROWDING: f32 = 20.0;
 /// How many things are moved out of the way for a step.
 const MOST_CLEARED: usize = 4;
 
@@ -97,7 +99,7 @@ impl Imitator<'_> {
                     outcome = self.put(stage, step, id, i);
                 }
                 self.or_from_beside(stage, outcome, |stage| {
-                    let goals = self.goals(stage, step)?;
+                    let goals = self.goals(stage.sight(), step)?;
                     let at = goals.first().map_or(Vec3::ZERO, |goal| goal.pose.location);
                     self.by_some_limb_from(stage, GraspSide::Beside, id, at, |transfer, stage| {
                         transfer.carry_out(stage, &goals)
@@ -120,7 +122,7 @@ impl Imitator<'_> {
         else {
             return straight;
         };
-        let goals = self.goals(stage, step)?;
+        let goals = self.goals(stage.sight(), step)?;
         let is_tipped = goals.iter().any(|goal| goal.is_tipped());
         let sight = stage.sight();
         let limbs = || 0..self.body.limbs.len();
@@ -153,7 +155,7 @@ impl Imitator<'_> {
         step: &TaskStep,
         id: &str,
     ) -> Result<(), PlanFailure> {
-        let goals = self.goals(stage, step)?;
+        let goals = self.goals(stage.sight(), step)?;
         let at = goals.first().map_or(Vec3::ZERO, |goal| goal.pose.location);
         let side = match goals.iter().any(|goal| goal.is_tipped()) {
             true => GraspSide::Any,
@@ -164,20 +166,50 @@ impl Imitator<'_> {
         })
     }
 
-    fn goals(
-        &self,
-        stage: &dyn PlanningStage,
-        step: &TaskStep,
-    ) -> Result<Vec<Candidate>, PlanFailure> {
-        let sight = stage.sight();
+    fn goals(&self, sight: &Sight, step: &TaskStep) -> Result<Vec<Candidate>, PlanFailure> {
         let goals = candidates(step, self.binding, sight, &self.before)?;
         if !is_inside(step) {
             return Ok(goals);
         }
-        let places = goals.iter().flat_map(|goal| inside(goal.pose, 0.3));
-        let mut places: Vec<_> = places.collect();
+        let mut places = self.places_inside(sight, step)?;
+        let object = self.binding.object(&step.object);
+        if let Some(object) = object.and_then(|id| sight.objects.get(id)) {
+            let later = self.later_inside(sight, step);
+            for place in &mut places {
+                let own = object.solids_at(place.pose);
+                let meets = |other: &Vec<PlacedSolid>| {
+                    own.iter()
+                        .any(|own| other.iter().any(|other| own.is_within(1e-3, other)))
+                };
+                let crowded = later.iter().filter(|goals| goals.iter().all(meets));
+                place.cost += COST_OF_CROWDING * crowded.count() as f32;
+            }
+        }
         places.extend(self.above_rim(sight, step, &goals));
         Ok(places)
+    }
+
+    /// For each later step that puts something into a container, the solids of its object at each of its goals.
+    fn later_inside(&self, sight: &Sight, step: &TaskStep) -> Vec<Vec<Vec<PlacedSolid>>> {
+        let later = self.task.steps[step.number..].iter();
+        let goals = later.filter(|later| is_inside(later)).filter_map(|later| {
+            let object = sight.objects.get(self.binding.object(&later.object)?)?;
+            let goals = candidates(later, self.binding, sight, &self.before).ok()?;
+            let solids = goals.iter().map(|goal| object.solids_at(goal.pose));
+            Some(solids.collect())
+        });
+        goals.filter(|goals: &Vec<_>| !goals.is_empty()).collect()
+    }
+
+    /// Places in a container.
+    pub(super) fn places_inside(
+        &self,
+        sight: &Sight,
+        step: &TaskStep,
+    ) -> Result<Vec<Candidate>, PlanFailure> {
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let places = goals.into_iter().flat_map(|goal| inside(goal, 0.3));
+        Ok(places.collect())
     }
 
     /// Places above a container from which an object falls into it.
