@@ -86,7 +86,7 @@ struct DropArgs {
     /// The folder of the new dataset
     #[arg(value_name = "OUT")]
     out: PathBuf,
-    /// The numbers of the episodes that are left out, from 0, such as 3,5-6
+    /// The episodes that are left out, from 0, separated by commas: each a number or a run, such as 3 or 5-6
     #[arg(long, value_name = "N,…", value_parser = run_of, value_delimiter = ',', required = true)]
     episodes: Vec<std::ops::RangeInclusive<u32>>,
 }

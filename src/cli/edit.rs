@@ -27,7 +27,7 @@ pub(super) struct EditArgs {
     /// The folder of the new recording
     #[arg(value_name = "OUT")]
     out: PathBuf,
-    /// Leave out these segments, such as 3 or 3,5-6
+    /// Leave out segments: their numbers, such as 3 or 3,5-6
     #[arg(long, value_name = "N,…", value_parser = numbers)]
     drop: Option<SegmentNumbers>,
     /// Let two segments change places, or two runs of them, such as 1-2,3-4
@@ -87,7 +87,8 @@ pub(super) fn run(args: &EditArgs) -> Result<ExitCode, Failure> {
 /// Reads numbers and runs, such as `3,5-6`.
 fn numbers(text: &str) -> Result<SegmentNumbers, String> {
     let runs: Result<Vec<_>, _> = text.split(',').map(run_of).collect();
-    Ok(SegmentNumbers(runs?.into_iter().flatten().collect()))
+    let runs = runs.map_err(|_| "expected their numbers, such as 3 or 3,5-6")?;
+    Ok(SegmentNumbers(runs.into_iter().flatten().collect()))
 }
 
 fn swap(text: &str) -> Result<Swap, String> {

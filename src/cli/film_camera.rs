@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use tabletop::{
-    film::{FilmCamera, Viewpoint},
+    film::{CameraPlace, FilmCamera},
     geometry::Pose,
 };
 
@@ -66,8 +66,8 @@ fn robots(name: &str) -> FilmCamera {
     FilmCamera {
         name: name.into(),
         viewpoint: match name {
-            "head" => Viewpoint::Head,
-            hand => Viewpoint::Hand(hand.into()),
+            "head" => CameraPlace::Head,
+            hand => CameraPlace::Hand(hand.into()),
         },
         size: None,
         vertical_fov: None,
@@ -90,7 +90,7 @@ fn standing(name: &str, numbers: &[f32]) -> Result<FilmCamera, String> {
         return Err(format!("camera {name} looks at the point where it is"));
     }
     Ok(FilmCamera {
-        viewpoint: Viewpoint::Standing(Pose::looking_at(from, at)),
+        viewpoint: CameraPlace::Standing(Pose::looking_at(from, at)),
         ..robots(name)
     })
 }
@@ -105,9 +105,9 @@ mod tests {
             cameras("head,left_hand, above=0,-8,12.5,0,0,1,side=9,0,3").unwrap();
         let names: Vec<_> = found.iter().map(|camera| camera.name.as_str()).collect();
         assert_eq!(names, ["head", "left_hand", "above", "side"]);
-        assert_eq!(found[0].viewpoint, Viewpoint::Head);
-        assert_eq!(found[1].viewpoint, Viewpoint::Hand("left_hand".into()));
-        let Viewpoint::Standing(pose) = found[2].viewpoint else {
+        assert_eq!(found[0].viewpoint, CameraPlace::Head);
+        assert_eq!(found[1].viewpoint, CameraPlace::Hand("left_hand".into()));
+        let CameraPlace::Standing(pose) = found[2].viewpoint else {
             panic!("{:?}", found[2]);
         };
         assert_eq!(pose.location, Vec3::new(0.0, -8.0, 12.5));

@@ -4,7 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
 use tabletop::{
-    film::{Film, FilmCamera, FilmError, FilmFormat, Pace, Viewpoint},
+    film::{CameraPlace, Film, FilmCamera, FilmError, FilmFormat, FrameRate},
     replay::Replay,
 };
 
@@ -100,11 +100,11 @@ impl VideoArgs {
     fn film(&self, format: FilmFormat) -> Film {
         let (width, height) = self.size.unwrap_or(match (format, &self.camera.viewpoint) {
             (FilmFormat::Png, _) => (320, 240),
-            (FilmFormat::Mp4 | FilmFormat::Gif, Viewpoint::Head | Viewpoint::Standing(_)) => {
+            (FilmFormat::Mp4 | FilmFormat::Gif, CameraPlace::Head | CameraPlace::Standing(_)) => {
                 (640, 480)
             }
             // As wide as they are.
-            (FilmFormat::Mp4 | FilmFormat::Gif, Viewpoint::Hand(_)) => (640, 400),
+            (FilmFormat::Mp4 | FilmFormat::Gif, CameraPlace::Hand(_)) => (640, 400),
         });
         let camera = FilmCamera {
             size: Some([width, height]),
@@ -116,7 +116,7 @@ impl VideoArgs {
             FilmFormat::Mp4 | FilmFormat::Png => 30,
         };
         Film {
-            pace: Pace {
+            pace: FrameRate {
                 fps: self.fps.unwrap_or(usual),
                 speed: self.speed,
             },

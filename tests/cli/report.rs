@@ -47,6 +47,7 @@ fn many_recordings_are_a_table() {
 
 #[test]
 fn ids_of_strangers_become_no_elements() {
+    let scenario = place("report_strange.ron");
     let setup = place("report_strange.xml");
     let object = r#"<block id="&lt;img src=x onerror=alert(1)&gt;" location="(0,0,1)" xspan="1" yspan="1" zspan="1" color="red"/>"#;
     fs::write(
@@ -54,13 +55,12 @@ fn ids_of_strangers_become_no_elements() {
         format!("<tabletop xspan=\"20\" yspan=\"12\">{object}</tabletop>"),
     )
     .unwrap();
+    fs::write(&scenario, format!("(setup: {setup:?}, steps: [Wait(1)])")).unwrap();
     let demo = place("report_strange");
     let demo = demo.to_str().unwrap();
     let output = tabletop(&[
         "run",
-        setup.to_str().unwrap(),
-        "--seconds",
-        "1",
+        scenario.to_str().unwrap(),
         "--record",
         demo,
         "--quiet",

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use tabletop_core::{Picture, SimTick};
 use tabletop_film::{
-    Canvas, FilmCamera, FilmError, Footage, Shot, Thing, VideoEncoder, VideoTrack, Viewpoint,
+    CameraPlace, Canvas, FilmCamera, FilmError, Footage, SeenThing, Shot, VideoEncoder, VideoTrack,
 };
 use tabletop_geometry::UNITS_PER_METER;
 use tabletop_recorder::RecordingReader;
@@ -97,8 +97,8 @@ fn recorded_as(replay: &Replay) -> Vec<FilmCamera> {
         vertical_fov: None,
     };
     let hands = replay.hand_cameras().iter();
-    let hands = hands.map(|hand| camera(&hand.name, Viewpoint::Hand(hand.name.clone())));
-    std::iter::once(camera("head", Viewpoint::Head))
+    let hands = hands.map(|hand| camera(&hand.name, CameraPlace::Hand(hand.name.clone())));
+    std::iter::once(camera("head", CameraPlace::Head))
         .chain(hands)
         .collect()
 }
@@ -211,11 +211,11 @@ fn depths_of(picture: &Picture) -> Vec<f32> {
 }
 
 /// The number of a thing, as `--ids` of recordings counts.
-fn number_of(thing: &Thing, shown: &Demonstration, tick: SimTick) -> u16 {
+fn number_of(thing: &SeenThing, shown: &Demonstration, tick: SimTick) -> u16 {
     let place = match thing {
-        Thing::Table => return 1,
-        Thing::Figure => None,
-        Thing::Object(id) => shown.objects.iter().position(|object| {
+        SeenThing::Table => return 1,
+        SeenThing::Figure => None,
+        SeenThing::Object(id) => shown.objects.iter().position(|object| {
             object.spec.id == id.as_str()
                 && object.created <= tick
                 && object.deleted.is_none_or(|deleted| tick < deleted)

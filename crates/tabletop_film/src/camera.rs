@@ -8,7 +8,7 @@ pub struct FilmCamera {
     /// Its name.
     pub name: String,
     /// Its place.
-    pub viewpoint: Viewpoint,
+    pub viewpoint: CameraPlace,
     /// Columns and rows of its pictures; `None` for those with which it was recorded.
     pub size: Option<[u32; 2]>,
     /// The angle between the lower and the upper edge, in rad; `None` for its own, which is π/3 for a camera that stands somewhere.
@@ -17,7 +17,7 @@ pub struct FilmCamera {
 
 /// The place of a camera.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Viewpoint {
+pub enum CameraPlace {
     /// The robot's head.
     Head,
     /// The robot's hand: the name of its camera, with or without `_camera` at its end.
@@ -31,7 +31,7 @@ impl FilmCamera {
     pub fn head(width: u32, height: u32) -> Self {
         Self {
             name: "head".into(),
-            viewpoint: Viewpoint::Head,
+            viewpoint: CameraPlace::Head,
             size: Some([width, height]),
             vertical_fov: None,
         }

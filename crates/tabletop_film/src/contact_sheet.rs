@@ -3,7 +3,7 @@
 use crate::canvas::{Canvas, wrapped};
 
 /// A moment on a contact sheet.
-pub(crate) struct Moment {
+pub(crate) struct Still {
     pub picture: Canvas,
     /// The words below it.
     pub caption: String,
@@ -17,8 +17,8 @@ const PAPER: [u8; 3] = [250; 3];
 const INK: [u8; 3] = [20; 3];
 
 /// Pictures in rows of so many, with their captions below them.
-pub(crate) fn contact_sheet(moments: &[Moment], columns: u32) -> Canvas {
-    let Some(Moment { picture, .. }) = moments.first() else {
+pub(crate) fn contact_sheet(moments: &[Still], columns: u32) -> Canvas {
+    let Some(Still { picture, .. }) = moments.first() else {
         return Canvas::default();
     };
     let letters = (picture.height as f32 * LETTERS).max(10.0);

@@ -8,11 +8,11 @@ use crate::{
     animation::Animation,
     camera::FilmCamera,
     canvas::{Canvas, wrapped},
-    contact_sheet::{Moment, contact_sheet},
+    contact_sheet::{Still, contact_sheet},
     error::FilmError,
     footage::{Footage, Shot},
+    frame_rate::FrameRate,
     mp4::Mp4Writer,
-    pace::Pace,
     video::{VideoEncoder, VideoTrack},
 };
 
@@ -22,7 +22,7 @@ pub struct Film {
     /// Its camera.
     pub camera: FilmCamera,
     /// Its pace.
-    pub pace: Pace,
+    pub pace: FrameRate,
     /// Says at the lower edge what is being done.
     pub has_captions: bool,
     /// Pictures side by side on a contact sheet.
@@ -67,7 +67,7 @@ impl Film {
     pub const fn of(camera: FilmCamera) -> Self {
         Self {
             camera,
-            pace: Pace {
+            pace: FrameRate {
                 fps: 30,
                 speed: 1.0,
             },
@@ -176,7 +176,7 @@ impl Film {
         let ticks: Vec<_> = chosen.iter().map(|(tick, _)| *tick).collect();
         Footage::new(replay, vec![self.camera.clone()]).shoot(ticks, |_, shots| {
             let caption = captions.next().map(|(_, caption)| caption.clone());
-            moments.push(Moment {
+            moments.push(Still {
                 picture: first_of(shots),
                 caption: caption.unwrap_or_default(),
             });
@@ -210,7 +210,7 @@ impl Film {
             .unwrap_or(all / MOMENTS)
             .max(all / MOST_MOMENTS as f64);
         let speed = period.max(1.0 / f64::from(TICKS_PER_SECOND));
-        let ticks = Pace { fps: 1, speed }.ticks(first, last);
+        let ticks = FrameRate { fps: 1, speed }.ticks(first, last);
         let moments = ticks.into_iter().map(|tick| {
             let words = story
                 .at(tick)

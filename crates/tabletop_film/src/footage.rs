@@ -11,7 +11,7 @@ use tabletop_robot::HandCameraCarrier;
 use tabletop_sim::headless_app_with;
 
 use crate::{
-    camera::{FilmCamera, Viewpoint},
+    camera::{CameraPlace, FilmCamera},
     error::FilmError,
 };
 
@@ -28,12 +28,12 @@ pub struct Shot {
     /// The picture. It has no pixels if the robot lacks the link that carries the camera.
     pub picture: Picture,
     /// The things behind the numbers in [`Picture::objects`], from 1.
-    pub things: Vec<Thing>,
+    pub things: Vec<SeenThing>,
 }
 
 /// A thing in a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Thing {
+pub enum SeenThing {
     /// The table.
     Table,
     /// The object of this id.
@@ -102,8 +102,8 @@ impl Studio {
     fn new(cameras: Vec<FilmCamera>, known: &[HandCamera]) -> Result<Self, FilmError> {
         let hand_of = |camera: &FilmCamera| -> Result<Option<HandCamera>, FilmError> {
             match &camera.viewpoint {
-                Viewpoint::Head | Viewpoint::Standing(_) => Ok(None),
-                Viewpoint::Hand(name) => {
+                CameraPlace::Head | CameraPlace::Standing(_) => Ok(None),
+                CameraPlace::Hand(name) => {
                     let is_it =
                         |it: &&HandCamera| it.name == *name || it.name == format!("{name}_camera");
                     let hand = known
@@ -147,9 +147,9 @@ fn draw(
     tables: Query<(), With<Table>>,
 ) {
     let thing = |&entity: &Entity| match objects.get(entity) {
-        Ok(object) => Thing::Object(object.id.to_string()),
-        Err(_) if tables.contains(entity) => Thing::Table,
-        Err(_) => Thing::Figure,
+        Ok(object) => SeenThing::Object(object.id.to_string()),
+        Err(_) if tables.contains(entity) => SeenThing::Table,
+        Err(_) => SeenThing::Figure,
     };
     let poses = |hand: &HandCamera| carrier.poses(std::slice::from_ref(hand)).pop()?;
     for (number, camera) in studio.cameras.iter().enumerate() {
@@ -162,21 +162,21 @@ fn draw(
             ..*head
         };
         let view = match camera.viewpoint {
-            Viewpoint::Head => Some(Camera::of_head(&of_head(head.mount), &world.table())),
-            Viewpoint::Standing(pose) => {
+            CameraPlace::Head => Some(Camera::of_head(&of_head(head.mount), &world.table())),
+            CameraPlace::Standing(pose) => {
                 let usual = HeadCamera {
                     square_fov: false,
                     ..of_head(Some(pose))
                 };
                 Some(Camera::of_head(&usual, &world.table()))
             }
-            Viewpoint::Hand(_) => {
+            CameraPlace::Hand(_) => {
                 hand.and_then(|hand| Some(Camera::of_hand(hand, poses(hand)?, &head)))
             }
         };
         let seen = match camera.viewpoint {
-            Viewpoint::Head => FiguresSeen::FromHead,
-            Viewpoint::Hand(_) | Viewpoint::Standing(_) => FiguresSeen::FromElsewhere,
+            CameraPlace::Head => FiguresSeen::FromHead,
+            CameraPlace::Hand(_) | CameraPlace::Standing(_) => FiguresSeen::FromElsewhere,
         };
         let shot = &mut studio.shots[number];
         let Some(view) = view else {

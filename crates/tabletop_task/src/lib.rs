@@ -37,6 +37,7 @@ mod requirement;
 mod role;
 mod rotation;
 mod sentence;
+mod spot;
 mod step;
 mod symmetry;
 mod task;

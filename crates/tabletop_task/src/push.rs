@@ -9,7 +9,7 @@ use crate::{
     detour::IN_PLACE,
     manipulation::Manipulation,
     noun::Nouns,
-    sentence::spot,
+    spot::spot,
 };
 
 /// A displacement of an object that no hand held, and that none moved afterwards.

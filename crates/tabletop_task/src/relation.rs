@@ -273,7 +273,7 @@ fn is_in_the_air(shown: &Demonstration, after: &Arrangement, manipulation: &Mani
     let track = shown.named(id).map(|object| &object.track);
     let is_still = track.is_some_and(|track| track.is_still_at(manipulation.rest));
     let has_rested = manipulation.rest < shown.end && !shown.is_poses_only;
-    !is_jointed && !has_rested && !(is_still && after.touches_anything(id))
+    !(is_jointed || has_rested || is_still && after.touches_anything(id))
 }
 
 /// The joint along which an object slides, with the greatest displacement that it allows.

@@ -6,6 +6,7 @@ use tabletop_core::Hand;
 use crate::{
     relation::{Relation, RelativeSide},
     requirement::Requirements,
+    spot::spot,
     step::TaskStep,
     task::Task,
     tipping::Tipping,
@@ -191,15 +192,6 @@ fn turn(axis: Vec3, degrees: f32) -> String {
         _ => format!("({:.1}, {:.1}, {:.1})", axis.x, axis.y, axis.z),
     };
     format!("by {}° about {about}", degrees.round())
-}
-
-/// A location on the table, in words.
-pub(crate) fn spot(location: Vec3) -> String {
-    let short = |x: f32| {
-        let rounded = (x * 10.0).round() / 10.0 + 0.0;
-        format!("{rounded}")
-    };
-    format!("({}, {})", short(location.x), short(location.y))
 }
 
 /// `a`, `a and b`, `a, b and c`.

@@ -8,7 +8,7 @@ use std::{
 
 use bevy::{platform::cell::SyncCell, prelude::*};
 use tabletop_core::Timeline;
-use tabletop_film::{Film, FilmCamera, FilmFormat, Pace, Viewpoint};
+use tabletop_film::{CameraPlace, Film, FilmCamera, FilmFormat, FrameRate};
 use tabletop_gui::{Notices, Tone};
 use tabletop_replay::Replay;
 use tabletop_storage::Storage;
@@ -48,7 +48,7 @@ pub(super) fn begin(world: &mut World, path: PathBuf) {
     };
     let camera = FilmCamera {
         name: "view".into(),
-        viewpoint: Viewpoint::Standing(pose),
+        viewpoint: CameraPlace::Standing(pose),
         size: Some(size),
         vertical_fov: Some(fov),
     };
@@ -58,7 +58,7 @@ pub(super) fn begin(world: &mut World, path: PathBuf) {
         FilmFormat::Mp4 | FilmFormat::Png => usual.pace.fps,
     };
     let film = Film {
-        pace: Pace { fps, ..usual.pace },
+        pace: FrameRate { fps, ..usual.pace },
         has_captions: true,
         ..usual
     };

@@ -5,12 +5,12 @@ use std::f32::consts::FRAC_PI_3;
 use bevy::math::Vec3;
 use tabletop_core::TICKS_PER_SECOND;
 use tabletop_export::{ActionKind, EpisodeSelection, PictureSelection, StateKind, TrainingEpisode};
-use tabletop_film::{FilmCamera, Viewpoint};
+use tabletop_film::{CameraPlace, FilmCamera};
 use tabletop_geometry::Pose;
 
 use crate::demonstration::{episode, recording};
 
-fn camera(name: &str, viewpoint: Viewpoint) -> FilmCamera {
+fn camera(name: &str, viewpoint: CameraPlace) -> FilmCamera {
     FilmCamera {
         name: name.into(),
         viewpoint,
@@ -30,7 +30,7 @@ fn read(pictures: PictureSelection) -> TrainingEpisode {
 #[test]
 fn pictures_made_again_are_the_recorded_ones_to_the_byte() {
     let again = read(PictureSelection {
-        cameras: Some(vec![camera("head", Viewpoint::Head)]),
+        cameras: Some(vec![camera("head", CameraPlace::Head)]),
         ..PictureSelection::default()
     });
     let recorded = episode();
@@ -79,8 +79,8 @@ fn a_camera_from_above_sees_distances_and_objects() {
     let above = Pose::looking_at(Vec3::new(0.0, -0.01, 10.0), Vec3::ZERO);
     let episode = read(PictureSelection {
         cameras: Some(vec![
-            camera("above", Viewpoint::Standing(above)),
-            camera("left_hand", Viewpoint::Hand("left_hand".into())),
+            camera("above", CameraPlace::Standing(above)),
+            camera("left_hand", CameraPlace::Hand("left_hand".into())),
         ]),
         size: Some([80, 60]),
         has_depth: true,
@@ -120,7 +120,7 @@ fn cameras_that_the_robot_lacks_are_refused_by_name() {
         pictures: PictureSelection {
             cameras: Some(vec![camera(
                 "third_hand",
-                Viewpoint::Hand("third_hand".into()),
+                CameraPlace::Hand("third_hand".into()),
             )]),
             ..PictureSelection::default()
         },

@@ -147,14 +147,14 @@ struct Model {
     tick: SimTick,
     is_paused: bool,
     agent: Agent,
-    film: Film,
+    film: FilmState,
     history: History,
     renderer: Option<Renderer>,
 }
 
 /// The state of recordings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-enum Film {
+enum FilmState {
     #[default]
     None,
     /// One is written.
@@ -195,16 +195,16 @@ impl Sources<'_> {
         }
     }
 
-    fn film(&self) -> Film {
+    fn film(&self) -> FilmState {
         let ticks = self.tick.0.saturating_sub(self.take.began.0);
         match (self.recording.0, self.replaying.0) {
-            (true, _) => Film::Recorded {
+            (true, _) => FilmState::Recorded {
                 folder: self.take.folder.clone(),
                 segment: self.history.dropped + self.history.undoable,
                 frame: ticks / TICKS_PER_FRAME,
             },
-            (false, true) => Film::Replayed,
-            (false, false) => Film::None,
+            (false, true) => FilmState::Replayed,
+            (false, false) => FilmState::None,
         }
     }
 }
@@ -226,7 +226,7 @@ fn show(ui: &mut Ui, model: &Model) {
     row(ui, "Simulated", simulated(model));
     row(ui, "Matlab", matlab(&model.agent, model.mean.call));
     row(ui, "Recording", recording(&model.film));
-    if matches!(model.film, Film::Recorded { .. }) {
+    if matches!(model.film, FilmState::Recorded { .. }) {
         row(ui, "Undo", undo(&model.history));
     }
     if let Some(renderer) = &model.renderer {
@@ -267,15 +267,15 @@ fn matlab(agent: &Agent, call: Option<Duration>) -> String {
     }
 }
 
-fn recording(film: &Film) -> String {
+fn recording(film: &FilmState) -> String {
     match film {
-        Film::None => "not recording".into(),
-        Film::Recorded {
+        FilmState::None => "not recording".into(),
+        FilmState::Recorded {
             folder,
             segment,
             frame,
         } => format!("segment {segment}, frame {frame} in {}", folder.display()),
-        Film::Replayed => "a recording is played".into(),
+        FilmState::Replayed => "a recording is played".into(),
     }
 }
 
@@ -404,7 +404,7 @@ mod tests {
                 call: None,
             },
             tick: SimTick(125),
-            film: Film::Recorded {
+            film: FilmState::Recorded {
                 folder: "demo".into(),
                 segment: 2,
                 frame: 57,
@@ -470,9 +470,9 @@ mod tests {
             let film = |sources: Sources| sources.film();
             app.world_mut().run_system_once(film).unwrap()
         };
-        assert_eq!(film(false, false, 0), Film::None);
-        assert_eq!(film(false, true, 0), Film::Replayed);
-        let expected = Film::Recorded {
+        assert_eq!(film(false, false, 0), FilmState::None);
+        assert_eq!(film(false, true, 0), FilmState::Replayed);
+        let expected = FilmState::Recorded {
             folder: "demo".into(),
             segment: 3,
             frame: 2,
