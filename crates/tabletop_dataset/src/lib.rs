@@ -1,6 +1,6 @@
 //! Folders of recordings and exported datasets: imported from other programs, described, checked, repaired, merged and split.
 //!
-//! Nothing here changes what it reads: results are new folders, which appear whole. Only [`repair`] changes a dataset, and only ends what an
+//! Nothing here changes what it reads: results are new folders, which appear whole. Only [`repair()`] changes a dataset, and only ends what an
 //! export to it has begun.
 
 mod card;
