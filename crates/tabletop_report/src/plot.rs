@@ -28,6 +28,9 @@ const MARGINS: [f32; 3] = [46.0, 20.0, 8.0];
 /// About so many marks on an axis.
 const MARKS: f32 = 5.0;
 
+/// The part of a step by which a mark at the end of an axis may be beyond it.
+const ROUNDING: f32 = 1e-3;
+
 /// Colours of lines that have none of their own.
 pub(crate) const COLORS: [&str; 8] = [
     "#4269d0", "#efb118", "#ff725c", "#6cc5b0", "#3ca951", "#ff8ab7", "#a463f2", "#97bbf5",
@@ -125,8 +128,8 @@ fn marks(least: f32, most: f32) -> Vec<f32> {
         .into_iter()
         .find(|step| *step >= rough)
         .unwrap_or(10.0 * power);
-    let first = (least / step).ceil() as i64;
-    let last = (most / step).floor() as i64;
+    let first = (least / step - ROUNDING).ceil() as i64;
+    let last = (most / step + ROUNDING).floor() as i64;
     let digits = (-power.log10().floor()).clamp(0.0, 6.0) as i32;
     let round = |value: f32| {
         let scale = 10_f32.powi(digits);

@@ -145,11 +145,6 @@ pub(super) fn read_lines(
         .has_headers(false)
         .flexible(true)
         .quoting(commas == CommaStyle::Quoted)
-        .trim(match commas {
-            CommaStyle::Quoted => csv::Trim::None,
-            // Files that were edited by hand may have spaces.
-            CommaStyle::Escaped => csv::Trim::Fields,
-        })
         .from_reader(text.as_bytes());
     let records = reader.records().map(|record| match record {
         Ok(record) => {
@@ -168,7 +163,11 @@ fn event_of(record: &csv::StringRecord, commas: CommaStyle) -> Result<RecordedEv
     let fields: Vec<_> = record.iter().map(str::to_owned).collect();
     let fields = match commas {
         CommaStyle::Quoted => fields,
-        CommaStyle::Escaped => joined(fields),
+        // Files that were edited by hand may have spaces between the values.
+        CommaStyle::Escaped => {
+            let fields = joined(fields).into_iter();
+            fields.map(|field| field.trim().to_owned()).collect()
+        }
     };
     let fields: Vec<_> = fields.iter().map(String::as_str).collect();
     parse(&fields)
