@@ -39,7 +39,7 @@ pub(super) struct ExportArgs {
     /// The action of a frame [default: hands; joints if the robot moves]
     #[arg(long, value_name = "KIND")]
     action: Option<ActionChoice>,
-    /// Pictures a second, a divisor of 60 [default: the recorded 4]
+    /// Pictures a second: 1, 2, 3, 4, 5, 6, 10, 12, 15, 20, 30 or 60 [default: the recorded 4]
     #[arg(long, value_name = "N", value_parser = picture_rate, allow_negative_numbers = true)]
     fps: Option<u32>,
     /// The size of pictures, with sides from 1 to 8192 pixels, and 16777216 pixels at most [default: as recorded]

@@ -4,7 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
 use tabletop::{
-    film::{CameraPlace, Film, FilmCamera, FilmError, FilmFormat, FrameRate},
+    film::{CameraPlace, Film, FilmCamera, FilmError, FilmFormat, FilmPace},
     replay::Replay,
 };
 
@@ -116,7 +116,7 @@ impl VideoArgs {
             FilmFormat::Mp4 | FilmFormat::Png => 30,
         };
         Film {
-            pace: FrameRate {
+            pace: FilmPace {
                 fps: self.fps.unwrap_or(usual),
                 speed: self.speed,
             },

@@ -11,8 +11,8 @@ use crate::{
     contact_sheet::{Still, contact_sheet},
     error::FilmError,
     footage::{Footage, Shot},
-    frame_rate::FrameRate,
     mp4::Mp4Writer,
+    pace::FilmPace,
     video::{VideoEncoder, VideoTrack},
 };
 
@@ -22,7 +22,7 @@ pub struct Film {
     /// Its camera.
     pub camera: FilmCamera,
     /// Its pace.
-    pub pace: FrameRate,
+    pub pace: FilmPace,
     /// Says at the lower edge what is being done.
     pub has_captions: bool,
     /// Pictures side by side on a contact sheet.
@@ -67,7 +67,7 @@ impl Film {
     pub const fn of(camera: FilmCamera) -> Self {
         Self {
             camera,
-            pace: FrameRate {
+            pace: FilmPace {
                 fps: 30,
                 speed: 1.0,
             },
@@ -210,7 +210,7 @@ impl Film {
             .unwrap_or(all / MOMENTS)
             .max(all / MOST_MOMENTS as f64);
         let speed = period.max(1.0 / f64::from(TICKS_PER_SECOND));
-        let ticks = FrameRate { fps: 1, speed }.ticks(first, last);
+        let ticks = FilmPace { fps: 1, speed }.ticks(first, last);
         let moments = ticks.into_iter().map(|tick| {
             let words = story
                 .at(tick)

@@ -20,8 +20,8 @@ mod contact_sheet;
 mod error;
 mod film;
 mod footage;
-mod frame_rate;
 mod mp4;
+mod pace;
 mod video;
 
 pub use camera::{CameraPlace, FilmCamera};
@@ -29,6 +29,6 @@ pub use canvas::Canvas;
 pub use error::FilmError;
 pub use film::{Film, FilmFormat};
 pub use footage::{Footage, SeenThing, Shot};
-pub use frame_rate::FrameRate;
 pub use mp4::Mp4Writer;
+pub use pace::FilmPace;
 pub use video::{VideoEncoder, VideoPacket, VideoTrack};

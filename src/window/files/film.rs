@@ -8,13 +8,13 @@ use std::{
 
 use bevy::{platform::cell::SyncCell, prelude::*};
 use tabletop_core::Timeline;
-use tabletop_film::{CameraPlace, Film, FilmCamera, FilmFormat, FrameRate};
+use tabletop_film::{CameraPlace, Film, FilmCamera, FilmFormat, FilmPace};
 use tabletop_gui::{Notices, Tone};
 use tabletop_replay::Replay;
 use tabletop_storage::Storage;
 use tabletop_xml::AllowedFolders;
 
-use super::{picture::view, tell};
+use super::picture::view;
 
 /// The size of its pictures, in columns and rows.
 const SIZE: [u32; 2] = [960, 720];
@@ -31,13 +31,15 @@ pub(super) struct Filming(Option<(PathBuf, SyncCell<Receiver<Result<(), String>>
 pub(super) fn begin(world: &mut World, path: PathBuf) {
     if world.resource::<Filming>().0.is_some() {
         let reason = "another video is being made; wait until it is saved";
-        return tell(world, Tone::Fault, reason);
+        world.resource_mut::<Notices>().renew(Tone::Fault, reason);
+        return;
     }
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     let Some(format) = FilmFormat::of_extension(&extension) else {
         let path = path.display();
         let reason = format!("{path}: expected a name that ends in .mp4, .gif or .png");
-        return tell(world, Tone::Fault, &reason);
+        world.resource_mut::<Notices>().renew(Tone::Fault, &reason);
+        return;
     };
     let Some((pose, fov)) = view(world) else {
         return;
@@ -58,7 +60,7 @@ pub(super) fn begin(world: &mut World, path: PathBuf) {
         FilmFormat::Mp4 | FilmFormat::Png => usual.pace.fps,
     };
     let film = Film {
-        pace: FrameRate { fps, ..usual.pace },
+        pace: FilmPace { fps, ..usual.pace },
         has_captions: true,
         ..usual
     };
@@ -72,7 +74,7 @@ pub(super) fn begin(world: &mut World, path: PathBuf) {
         let _unheard = sender.send(made);
     });
     let text = format!("{} is being made", path.display());
-    tell(world, Tone::Event, &text);
+    world.resource_mut::<Notices>().renew(Tone::Event, &text);
     world.resource_mut::<Filming>().0 = Some((path, SyncCell::new(result)));
 }
 

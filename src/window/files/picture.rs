@@ -7,10 +7,8 @@ use tabletop_camera::{Camera, FiguresSeen, Rasterizer, Scene, VisibleWorld};
 use tabletop_core::{HeadCamera, Picture};
 use tabletop_film::Canvas;
 use tabletop_geometry::Pose;
-use tabletop_gui::Tone;
+use tabletop_gui::{Notices, Tone};
 use tabletop_storage::Storage;
-
-use super::tell;
 
 /// The user's camera: its pose in the table's frame, and its angle of view from top to bottom in rad.
 pub(super) fn view(world: &mut World) -> Option<(Pose, f32)> {
@@ -48,14 +46,11 @@ pub(super) fn save(world: &mut World, path: &Path, [width, height]: [u32; 2]) {
             written.map_err(|error| error.to_string())
         });
     let path = path.display();
-    match written {
-        Ok(()) => tell(world, Tone::Event, &format!("{path} is saved")),
-        Err(error) => tell(
-            world,
-            Tone::Fault,
-            &format!("{path} cannot be saved: {error}"),
-        ),
-    }
+    let (tone, text) = match written {
+        Ok(()) => (Tone::Event, format!("{path} is saved")),
+        Err(error) => (Tone::Fault, format!("{path} cannot be saved: {error}")),
+    };
+    world.resource_mut::<Notices>().renew(tone, &text);
 }
 
 fn draw(In(camera): In<Camera>, world: VisibleWorld) -> Picture {

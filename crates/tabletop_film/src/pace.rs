@@ -4,14 +4,14 @@ use tabletop_core::{SimTick, TICKS_PER_SECOND};
 
 /// The pace at which a film shows a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameRate {
+pub struct FilmPace {
     /// Frames of the film a second.
     pub fps: u32,
     /// Simulated seconds a second of the film.
     pub speed: f64,
 }
 
-impl FrameRate {
+impl FilmPace {
     /// The ticks whose ends the frames show, from a first one to a last one, both included. A slow film shows a tick several times.
     pub fn ticks(&self, first: SimTick, last: SimTick) -> Vec<SimTick> {
         let step = f64::from(TICKS_PER_SECOND) * self.speed / f64::from(self.fps.max(1));
@@ -30,7 +30,7 @@ mod tests {
     use super::*;
 
     fn ticks(fps: u32, speed: f64, first: u64, last: u64) -> Vec<u64> {
-        let ticks = FrameRate { fps, speed }.ticks(SimTick(first), SimTick(last));
+        let ticks = FilmPace { fps, speed }.ticks(SimTick(first), SimTick(last));
         ticks.into_iter().map(|tick| tick.0).collect()
     }
 
