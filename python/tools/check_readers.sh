@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Exports recordings to every format, and lets the tools' own readers read them: check_readers.sh [light] [octave] [lerobot] [robomimic] [rlds].
-# Each reader gets a Python environment of its own below ~/.cache/tabletop/readers, made with pip; lerobot takes half an hour the first time.
+# Ends with 3 if a reader cannot be installed. Each reader gets a Python environment of its own below ~/.cache/tabletop/readers, made with pip; lerobot takes half an hour the first time.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 program=${TABLETOP:-${CARGO_TARGET_DIR:-target}/release/tabletop}
@@ -15,7 +15,7 @@ python_with() {
   local environment=$environments/$1
   shift
   [[ -x $environment/bin/python ]] || python3 -m venv "$environment" >&2
-  "$environment/bin/python" -m pip install --quiet --disable-pip-version-check "$@" >&2
+  "$environment/bin/python" -m pip install --quiet --disable-pip-version-check "$@" >&2 || return
   echo "$environment/bin/python"
 }
 
@@ -32,22 +32,28 @@ recordings=("$work"/many/000?)
 for reader in "$@"; do
   echo "== $reader"
   case $reader in
-    light) "$(python_with light h5py pyarrow mcap)" "$readers/read_light.py" "$work" ;;
+    light)
+      python=$(python_with light h5py pyarrow mcap) || exit 3
+      "$python" "$readers/read_light.py" "$work"
+      ;;
     octave)
       octave --quiet --eval "e = load('$work/mat/episode-000000.mat'); assert(size(e.head_image, 3), 3);
         assert(size(e.state, 1), size(e.head_image, 4)); printf('Octave %s: %d frames, %s\n', version, size(e.state, 1), char(e.task));"
       ;;
     lerobot)
-      python=$(python_with lerobot lerobot)
+      python=$(python_with lerobot lerobot) || exit 3
       "$python" "$readers/read_lerobot.py" "$work/lerobot" "${recordings[@]}"
       "$python" "$readers/read_lerobot.py" "$work/lerobot_video" "${recordings[@]}"
       ;;
     robomimic)
-      python=$(python_with robomimic torch torchvision h5py tensorboardX psutil termcolor imageio tqdm)
+      python=$(python_with robomimic torch torchvision h5py tensorboardX psutil termcolor imageio tqdm) || exit 3
       "$python" -m pip install --quiet --no-deps robomimic
       "$python" "$readers/read_robomimic.py" "$work/robomimic.hdf5"
       ;;
-    rlds) TF_CPP_MIN_LOG_LEVEL=3 "$(python_with rlds tensorflow-cpu tensorflow-datasets)" "$readers/read_rlds.py" "$work/rlds" 2>/dev/null ;;
+    rlds)
+      python=$(python_with rlds tensorflow-cpu tensorflow-datasets) || exit 3
+      TF_CPP_MIN_LOG_LEVEL=3 "$python" "$readers/read_rlds.py" "$work/rlds" 2>/dev/null
+      ;;
     *)
       echo "there is no reader $reader" >&2
       exit 2
