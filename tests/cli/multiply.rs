@@ -276,7 +276,7 @@ fn moved_after(recording: &Path, seconds: u64) -> Vec<String> {
 
 /// `COUNT=1000` looks at more of them.
 #[test]
-fn what_a_demonstration_has_put_down_stays() {
+fn objects_that_were_put_down_stay() {
     let count = std::env::var("COUNT").unwrap_or_else(|_| "12".into());
     let steps = "WaitUntilRest(5), Start,
         Grasp(\"Green\"), Glide(to: (0, -4, 4), seconds: 0.3), Glide(to: (3.3, -2.5, 4), seconds: 0.5),
