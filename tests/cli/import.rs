@@ -135,7 +135,7 @@ fn lines_that_make_no_sense_are_told_and_left_out() {
 }
 
 #[test]
-fn what_is_no_original_recording_is_refused_and_nothing_is_made() {
+fn other_files_than_originals_are_refused_and_nothing_is_made() {
     let demo = record_shipped("stack_two_blocks", "import_refused_recorded");
     let empty = place("import_refused_empty");
     fs::create_dir_all(&empty).unwrap();
