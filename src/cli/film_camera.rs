@@ -9,7 +9,9 @@ use tabletop::{
 use super::range::NumberRange;
 
 /// Coordinates of cameras, in units.
-const COORDINATES: NumberRange<f32> = NumberRange::decimal(-1000.0, 1000.0);
+pub(super) const COORDINATES: NumberRange<f32> = NumberRange::decimal(-1000.0, 1000.0);
+/// Angles of view from top to bottom.
+pub(super) const ANGLES_OF_VIEW: NumberRange<f32> = NumberRange::decimal(1.0, 179.0).of("degrees");
 
 /// Cameras, separated by commas.
 #[derive(Clone, Debug)]

@@ -18,10 +18,10 @@ use super::{
     allowed_paths::AllowedPaths,
     cut_off::say_if_cut_off,
     duration::{SECONDS, ticks},
+    film_camera::{ANGLES_OF_VIEW, COORDINATES},
     hand_cameras::HandCameraOption,
     picture_size::picture_size,
     progress::ProgressLine,
-    range::NumberRange,
     recorded::say_moved_aside,
     robot_options::{EngineOptions, script},
     script::{Script, headless_settings},
@@ -87,10 +87,6 @@ struct PictureArgs {
     #[arg(long)]
     ids: bool,
 }
-
-/// Coordinates of cameras, in units.
-const COORDINATES: NumberRange<f32> = NumberRange::decimal(-1000.0, 1000.0);
-const ANGLES_OF_VIEW: NumberRange<f32> = NumberRange::decimal(1.0, 179.0).of("degrees");
 
 /// Reads a point such as `0,-8,12.5`.
 fn point(text: &str) -> Result<Vec3, String> {

@@ -12,7 +12,7 @@ use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
     cut_off::say_if_cut_off,
-    film_camera::camera,
+    film_camera::{ANGLES_OF_VIEW, camera},
     picture_size::picture_size,
     progress::ProgressLine,
     range::NumberRange,
@@ -56,14 +56,10 @@ pub(super) struct VideoArgs {
     allowed: AllowedPaths,
 }
 
-const ANGLES_OF_VIEW: NumberRange<f32> = NumberRange::decimal(1.0, 179.0).of("degrees");
 const RATES: NumberRange<u32> = NumberRange::whole(1, 60);
 const SPEEDS: NumberRange<f64> = NumberRange::decimal(0.01, 100.0);
 const COLUMNS: NumberRange<u32> = NumberRange::whole(1, 100);
 const PERIODS: NumberRange<f64> = NumberRange::decimal(0.05, 86400.0).of("seconds");
-
-/// Frames a second of an animation: viewers show faster ones slowly.
-const ANIMATION_RATE: u32 = 10;
 
 /// Makes the video.
 pub(super) fn run(args: &VideoArgs) -> Result<ExitCode, Failure> {
@@ -111,13 +107,9 @@ impl VideoArgs {
             vertical_fov: self.fov.map(f32::to_radians),
             ..self.camera.clone()
         };
-        let usual = match format {
-            FilmFormat::Gif => ANIMATION_RATE,
-            FilmFormat::Mp4 | FilmFormat::Png => 30,
-        };
         Film {
             pace: FilmPace {
-                fps: self.fps.unwrap_or(usual),
+                fps: self.fps.unwrap_or(format.usual_fps()),
                 speed: self.speed,
             },
             has_captions: self.captions,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use tabletop_film::Canvas;
 use tabletop_storage::{Symlinks, read_regular_file};
 
 use crate::error::ExportError;
@@ -68,14 +69,9 @@ impl Image {
 
     /// A picture of these pixels.
     pub(crate) fn new(width: u32, height: u32, rgb: Vec<u8>) -> Result<Self, png::EncodingError> {
-        let mut png = Vec::new();
-        let mut encoder = png::Encoder::new(&mut png, width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::Fast);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&rgb)?;
-        writer.finish()?;
+        let canvas = Canvas { width, height, rgb };
+        let png = canvas.png()?;
+        let rgb = canvas.rgb;
         Ok(Self {
             width,
             height,

@@ -59,16 +59,14 @@ impl TrainingEpisode {
             ActionKind::Hands => hand_motions(&shown, &hands, &ticks),
             ActionKind::Joints => shifted(&joints),
             ActionKind::EndEffectors => {
-                let replay =
-                    replay.get_or_insert(Replay::read_allowing(folder, &selection.allowed)?);
+                let replay = replay_of(&mut replay, folder, selection)?;
                 end_effector_motions(replay, &joints)?
             }
         };
         let mut cameras = match pictures.are_recorded(recorded_fps) {
             true => recorded_cameras(&recording, ticks.len())?,
             false => {
-                let replay =
-                    replay.get_or_insert(Replay::read_allowing(folder, &selection.allowed)?);
+                let replay = replay_of(&mut replay, folder, selection)?;
                 filmed_cameras(replay, &shown, pictures, &ticks)?
             }
         };
@@ -96,6 +94,18 @@ impl TrainingEpisode {
             subtasks: subtasks.collect(),
             ticks,
         })
+    }
+}
+
+/// The recording to be simulated again, read once.
+fn replay_of<'r>(
+    replay: &'r mut Option<Replay>,
+    folder: &Path,
+    selection: &EpisodeSelection,
+) -> Result<&'r Replay, ExportError> {
+    match replay {
+        Some(replay) => Ok(replay),
+        None => Ok(replay.insert(Replay::read_allowing(folder, &selection.allowed)?)),
     }
 }
 

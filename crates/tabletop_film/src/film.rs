@@ -60,6 +60,14 @@ impl FilmFormat {
             _ => None,
         }
     }
+
+    /// Frames a second, unless others are asked for. Viewers show faster animations slowly.
+    pub const fn usual_fps(self) -> u32 {
+        match self {
+            Self::Gif => 10,
+            Self::Mp4 | Self::Png => 30,
+        }
+    }
 }
 
 impl Film {

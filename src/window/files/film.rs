@@ -20,8 +20,6 @@ use super::picture::view;
 const SIZE: [u32; 2] = [960, 720];
 /// Those of an animation and a contact sheet.
 const SMALL: [u32; 2] = [480, 360];
-/// Frames a second of an animation: viewers show faster ones slowly.
-const ANIMATION_RATE: u32 = 10;
 
 /// The video that is being made.
 #[derive(Resource, Default)]
@@ -55,10 +53,7 @@ pub(super) fn begin(world: &mut World, path: PathBuf) {
         vertical_fov: Some(fov),
     };
     let usual = Film::of(camera);
-    let fps = match format {
-        FilmFormat::Gif => ANIMATION_RATE,
-        FilmFormat::Mp4 | FilmFormat::Png => usual.pace.fps,
-    };
+    let fps = format.usual_fps();
     let film = Film {
         pace: FilmPace { fps, ..usual.pace },
         has_captions: true,
