@@ -2,6 +2,7 @@
 
 use std::{
     fs,
+    path::PathBuf,
     sync::atomic::{AtomicU32, Ordering},
 };
 
@@ -52,13 +53,72 @@ fn a_chest_is_opened_filled_and_closed() {
     is_done(&recorded("chest"), &[]);
 }
 
-/// Records these steps on a table with these objects.
-fn shown(name: &str, objects: &str, steps: &str) -> String {
-    let [task, file] = ["xml", "ron"].map(|ending| place(&format!("imitate_{name}.{ending}")));
+/// A cabinet with a drawer, a cube to put in, and more.
+fn cabinet(more: &str) -> String {
+    let walls = r#"
+        <sliderJoint location="(4,-2.2,1)" rotation="(0,0,90)" max="2" damping="0.5">
+          <composite id="cabinet" location="(0,0,0)" mass="0">
+            <block location="(0,0,-0.9)" xspan="3" yspan="3" zspan="0.2" color="brown"/>
+            <block location="(0,0,0.9)" xspan="3" yspan="3" zspan="0.2" color="brown"/>
+            <block location="(1.4,0,0)" xspan="0.2" yspan="3" zspan="1.6" color="brown"/>
+            <block location="(-0.1,-1.4,0)" xspan="2.8" yspan="0.2" zspan="1.6" color="brown"/>
+            <block location="(-0.1,1.4,0)" xspan="2.8" yspan="0.2" zspan="1.6" color="brown"/>
+          </composite>
+          <composite id="drawer" location="(-0.1,0,0)" mass="0.8">
+            <box location="(0,0,0)" xspan="2.6" yspan="2.4" zspan="1.2" thickness="0.15" color="orange"/>
+            <block location="(-1.75,0,0.2)" xspan="0.9" yspan="0.8" zspan="0.4" color="black"/>
+          </composite>
+        </sliderJoint>
+        <block id="Cube" location="(-3,-3,0.3)" xspan="0.6" yspan="0.6" zspan="0.6" mass="0.2" color="blue"/>"#;
+    walls.to_owned() + more
+}
+
+#[test]
+fn a_drawer_is_opened_filled_and_closed() {
+    let slid = |by: f32| {
+        format!(
+            "Grasp(\"drawer\"), MoveBy((0, {by}, 0)), WaitUntilThere(3), Release, WaitUntilRest(3),"
+        )
+    };
+    let put = "Grasp(\"Cube\"), Glide(to: (-3, -3, 4), seconds: 0.5), Glide(to: (4, -4.4, 4), seconds: 1),
+         Glide(to: (4, -4.4, 1), seconds: 0.8), WaitUntilThere(1), Release, WaitUntilRest(3),";
+    let steps = [&slid(-1.7), put, &slid(1.9)].concat();
+    let demo = shown("drawer", &cabinet(""), &steps);
+    is_done(&demo, &[]);
+    for seed in ["0", "1", "7"] {
+        is_done(&demo, &["--seed", seed]);
+    }
+    // What is in its way is put aside, or named if nothing moves it.
+    let in_its_way = |name: &str, mass: &str| {
+        let block = r#"<block id="Red" location="(4.2,-5.3,0.5)" xspan="0.6" yspan="0.6" zspan="1" color="red""#;
+        task_file(name, &cabinet(&format!("{block} mass=\"{mass}\"/>")))
+    };
+    let movable = in_its_way("drawer_blocked", "0.3");
+    is_done(&demo, &["--setup", movable.to_str().unwrap()]);
+    let fixed = in_its_way("drawer_barred", "0");
+    let output = tabletop(&["imitate", &demo, "--setup", fixed.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1));
+    let reported = stdout(&output);
+    assert!(
+        reported.contains("Red is in the way of drawer, and nothing moves it"),
+        "{reported}"
+    );
+}
+
+/// A task file with these objects.
+fn task_file(name: &str, objects: &str) -> PathBuf {
+    let file = place(&format!("imitate_{name}.xml"));
     let namespace = "http://synapse.cs.umd.edu/tabletop-xml";
     let text =
         format!("<tabletop xmlns=\"{namespace}\" xspan=\"20\" yspan=\"12\">{objects}</tabletop>");
-    fs::write(&task, text).unwrap();
+    fs::write(&file, text).unwrap();
+    file
+}
+
+/// Records these steps on a table with these objects.
+fn shown(name: &str, objects: &str, steps: &str) -> String {
+    let task = task_file(name, objects);
+    let file = task.with_extension("ron");
     let setup = task.file_name().unwrap();
     let text = format!(
         "(setup: {setup:?}, steps: [WaitUntilRest(2), Start, {steps} WaitUntilRest(3), Finish])"

@@ -132,11 +132,16 @@ pub fn scattered(
                     .into_iter()
                     .map(move |solid| PlacedSolid::of(&solid, *pose))
             });
-            // A sliding part is opened by one arm.
+            // A sliding part is opened by one arm, where that takes it.
             let reached = parts.iter().map(|part| {
                 let ways = opened.iter().filter(|(slid, _)| slid.id == part.id);
-                let ends = ways.map(|(_, pose)| pose.location);
-                std::iter::once(part.pose.location).chain(ends).collect()
+                let mut ends: Vec<_> = ways.map(|(_, pose)| *pose).collect();
+                let own = match ends.is_empty() {
+                    true => Vec3::ZERO,
+                    false => body.map_or(Vec3::ZERO, |body| body.hold(&part.shape, part.pose)),
+                };
+                ends.push(part.pose);
+                ends.into_iter().map(|end| end * own).collect()
             });
             let reached = reached.collect();
             let piece = Piece {

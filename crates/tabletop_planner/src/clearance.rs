@@ -34,6 +34,8 @@ pub(crate) struct Clearance<'a> {
     carried: RefCell<Vec<PlacedSolid>>,
     /// Rotation from the held object, when it does not lean, to the end effector's frame; `None` if it may lean.
     upright: Option<Quat>,
+    /// True if a joint guides the held object, which may touch what it slides along.
+    is_guided: bool,
 }
 
 /// Distances to be kept from obstacles.
@@ -98,6 +100,7 @@ impl<'a> Clearance<'a> {
             held: Vec::new(),
             carried: RefCell::default(),
             upright: None,
+            is_guided: false,
             table: sight.table,
             angles,
             body,
@@ -123,6 +126,12 @@ impl<'a> Clearance<'a> {
             })
             .collect();
         self.carried = RefCell::new(self.held.clone());
+        self
+    }
+
+    /// The limb with an object that a joint guides: only the limb keeps clear of obstacles.
+    pub fn guided(mut self) -> Self {
+        self.is_guided = true;
         self
     }
 
@@ -173,11 +182,8 @@ impl<'a> Clearance<'a> {
         if fingers
             .iter()
             .any(|finger| self.is_at_table(finger, margins.fingers))
-            || held
-                .iter()
-                .any(|solid| self.is_at_table(solid, margins.held_above_table))
             || self.meets(&fingers, margins.fingers)
-            || self.meets(held, margins.held)
+            || !self.is_guided && self.is_held_at_obstacle(held, margins)
         {
             return false;
         }
@@ -214,6 +220,12 @@ impl<'a> Clearance<'a> {
     pub fn has_room_for_fingers(&self, end_effector: Pose, opening: f32, margin: f32) -> bool {
         let fingers = self.body.fingers(self.limb, end_effector, opening);
         !self.meets(&fingers, margin)
+    }
+
+    fn is_held_at_obstacle(&self, held: &[PlacedSolid], margins: Margins) -> bool {
+        held.iter()
+            .any(|solid| self.is_at_table(solid, margins.held_above_table))
+            || self.meets(held, margins.held)
     }
 
     fn meets(&self, solids: &[PlacedSolid], margin: f32) -> bool {

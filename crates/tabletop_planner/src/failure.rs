@@ -26,6 +26,13 @@ pub enum PlanFailure {
         /// The object that is there.
         by: String,
     },
+    /// Something that nothing moves is in the way of a part that slides.
+    Barred {
+        /// The part that was to be slid.
+        object: String,
+        /// The object in its way.
+        by: String,
+    },
     /// No free path leads to the goal.
     NoWay(String),
     /// The fingers have closed without holding the object.
@@ -65,6 +72,7 @@ impl PlanFailure {
             Self::Gone(_)
             | Self::Tipped(_)
             | Self::Occupied { .. }
+            | Self::Barred { .. }
             | Self::NotHeld(_)
             | Self::Blocked { .. }
             | Self::NoRoom(_)
@@ -84,6 +92,7 @@ impl PlanFailure {
             Self::Tipped(_) | Self::NoWay(_) => 4,
             Self::Gone(_)
             | Self::Occupied { .. }
+            | Self::Barred { .. }
             | Self::NotHeld(_)
             | Self::Blocked { .. }
             | Self::NoRoom(_)
@@ -106,6 +115,7 @@ impl PlanFailure {
             | Self::NoGrasp(_)
             | Self::Tipped(_)
             | Self::Occupied { .. }
+            | Self::Barred { .. }
             | Self::NoRoom(_)
             | Self::Gone(_)
             | Self::NoGoal(_)
@@ -124,6 +134,7 @@ impl PlanFailure {
             Self::NoGrasp(_) => "no grasp",
             Self::Tipped(_) => "to be tipped",
             Self::Occupied { .. } => "occupied",
+            Self::Barred { .. } => "barred",
             Self::NoWay(_) => "no way",
             Self::NotHeld(_) => "not held",
             Self::Blocked { .. } => "blocked",
@@ -161,6 +172,9 @@ impl fmt::Display for PlanFailure {
             ),
             Self::Occupied { object, by } => {
                 write!(f, "{by} is where {object} belongs, and nothing moves it")
+            }
+            Self::Barred { object, by } => {
+                write!(f, "{by} is in the way of {object}, and nothing moves it")
             }
             Self::NoWay(object) => {
                 write!(f, "there is no free way for {object} to where it belongs")

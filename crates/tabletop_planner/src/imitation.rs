@@ -6,6 +6,7 @@ mod clearing;
 mod putting_back;
 mod regrasp;
 mod slider;
+mod sliding;
 mod step;
 
 use cleared::Cleared;

@@ -7,7 +7,7 @@
 //! | from the whole to its parts | |
 //! |---|---|
 //! | `imitation` | the steps of the task one after the other, with a look after each: `step` does one, `clearing` makes room for it, `regrasp` goes by way of another place, `arms` chooses the arm |
-//! | `transfer` | one arm moves one object: `choice` of the grasp, `ways`, `acts` |
+//! | `transfer` | one arm moves one object: `choice` of the grasp, `ways`, `acts`, `slide` along a joint |
 //! | `goals`, `grasp`, `standing`, `free_spot` | where an object may go, how it is taken, on which sides it lies, where there is room |
 //! | `transit`, `path`, `rrt`, `clearance` | free paths of an arm |
 //! | `body`, `arm_length` | the robot |

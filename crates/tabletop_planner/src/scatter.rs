@@ -3,11 +3,14 @@
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Random, Table};
+use tabletop_core::{Random, Shape, Table};
 use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_task::Arrangement;
 
-use crate::body::RobotBody;
+use crate::{
+    body::RobotBody,
+    grasp::{GraspSide, grasps},
+};
 
 /// A group of objects that is moved as one.
 #[derive(Clone, Debug)]
@@ -102,6 +105,21 @@ pub fn scatter(
 }
 
 impl RobotBody {
+    /// The point of an object, in its frame, that has to be reached to take it from above where it fits best between the fingers; its origin, if it fits
+    /// nowhere.
+    pub fn hold(&self, shape: &Shape, pose: Pose) -> Vec3 {
+        let limb = self.limbs.first();
+        let all = limb.map_or(Vec::new(), |limb| {
+            let (finger, widest) = (limb.finger.z, limb.widest);
+            grasps(shape, pose.rotation, GraspSide::Above, finger, widest)
+        });
+        let best = all.iter().min_by(|a, b| a.off.total_cmp(&b.off));
+        best.map_or(Vec3::ZERO, |best| {
+            let hold = pose * best.end_effector.location - Vec3::Z * HOLD;
+            pose.inverse() * hold
+        })
+    }
+
     /// True if one limb reaches all points, and the space above them, from above, with its fingers turned in any direction; or, if they are too high
     /// for that, from the same side.
     pub fn reaches(&self, points: &[Vec3]) -> bool {

@@ -2,6 +2,7 @@
 
 mod acts;
 mod choice;
+mod slide;
 mod ways;
 
 use bevy::math::Vec3;

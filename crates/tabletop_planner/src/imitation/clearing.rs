@@ -14,6 +14,8 @@ use crate::{
     stage::PlanningStage,
 };
 
+/// How many things are moved out of the way for a step.
+pub(super) const MOST_CLEARED: usize = 4;
 /// Distance, in units, below which an object leaves no room for fingers.
 const FINGER_ROOM: f32 = 0.7;
 
@@ -162,14 +164,19 @@ impl Imitator<'_> {
         self.clear_alone(stage, id, i)
     }
 
-    /// Moves the objects that stand on another one out of the way.
+    /// Moves the objects that stand on another one out of the way. What is in a part that slides goes along with it.
     pub(super) fn clear_above(
         &mut self,
         stage: &mut dyn PlanningStage,
         id: &str,
         i: usize,
     ) -> Result<(), PlanFailure> {
-        let stack = stage.sight().stack_above(id);
+        let sight = stage.sight();
+        let arrangement = sight.arrangement();
+        let slides = Slider::of(sight, id).is_some();
+        let goes_along = |above: &str| slides && arrangement.containers(above).contains(&id);
+        let mut stack = sight.stack_above(id);
+        stack.retain(|above| !goes_along(above));
         let mut stack = stack.iter();
         stack.try_for_each(|above| self.clear_alone(stage, above, i))
     }

@@ -42,7 +42,7 @@ impl Imitator<'_> {
         };
         if Slider::of(&sight, id).is_some() {
             let by = pose.location - object.pose.location;
-            return self.slide(stage, id, by);
+            return self.slide_past(stage, id, by);
         }
         match cleared.fits(&sight) {
             true => self.by_some_limb(stage, id, pose.location, |transfer, stage| {

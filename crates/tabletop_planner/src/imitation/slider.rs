@@ -4,9 +4,6 @@ use bevy::math::Vec3;
 use tabletop_controller::Sight;
 use tabletop_core::JointKind;
 
-use super::Imitator;
-use crate::{failure::PlanFailure, stage::PlanningStage};
-
 /// A part that slides along a joint.
 pub(super) struct Slider<'s> {
     /// The object along which it slides.
@@ -44,19 +41,5 @@ impl<'s> Slider<'s> {
     /// The displacement after which it is open so far, in units.
     pub fn by(&self, opening: f32) -> Vec3 {
         self.way * (opening - self.opening)
-    }
-}
-
-impl Imitator<'_> {
-    /// Slides a part by so much.
-    pub(super) fn slide(
-        &self,
-        stage: &mut dyn PlanningStage,
-        id: &str,
-        by: Vec3,
-    ) -> Result<(), PlanFailure> {
-        let object = stage.sight().objects.get(id);
-        let from = object.map_or(Vec3::ZERO, |object| object.pose.location);
-        self.by_some_limb(stage, id, from, |transfer, stage| transfer.slide(stage, by))
     }
 }

@@ -5,7 +5,7 @@ use tabletop_controller::Sight;
 use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_task::{Relation, TaskStep};
 
-use super::{Imitator, slider::Slider};
+use super::{Imitator, clearing::MOST_CLEARED, slider::Slider};
 use crate::{
     failure::PlanFailure,
     goals::{Candidate, Placement, bound, candidates, inside, is_inside},
@@ -20,8 +20,6 @@ const ABOVE_RIM: f32 = 0.1;
 const COST_OF_FALL: f32 = 10.0;
 /// Cost of leaving no room for an object that a later step puts into a container: rather let it fall.
 const COST_OF_CROWDING: f32 = 20.0;
-/// How many things are moved out of the way for a step.
-const MOST_CLEARED: usize = 4;
 
 impl Imitator<'_> {
     pub(super) fn do_step(
@@ -47,7 +45,7 @@ impl Imitator<'_> {
                 let holder = bound(binding, holder)?;
                 let slider = Slider::of(&sight, id).filter(|slider| slider.holder == holder);
                 let slider = slider.ok_or_else(|| PlanFailure::Gone(holder.to_owned()))?;
-                self.slide(stage, id, slider.by(opening / travel * slider.travel))
+                self.slide(stage, id, slider.by(opening / travel * slider.travel), i)
             }
             Some(Relation::Held) => {
                 self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
@@ -76,7 +74,7 @@ impl Imitator<'_> {
             | None => {
                 for (lid, by) in self.lids(stage.sight(), step, id)? {
                     self.remember(stage.sight(), &lid);
-                    self.slide(stage, &lid, by)?;
+                    self.slide(stage, &lid, by, i)?;
                 }
                 for _ in 0..MOST_CLEARED {
                     let Some(occupant) = self.occupant(stage.sight(), step, id)? else {

@@ -7,14 +7,14 @@ use tabletop_geometry::Pose;
 use super::{
     PAIRS, Transfer, above_place,
     choice::Taking,
-    ways::{Placing, RELEASES, back_or_out},
+    ways::{Placing, back_or_out},
 };
 use crate::{
     clearance::{Clearance, Margins},
     failure::PlanFailure,
     goals::{Candidate, Placement},
     motion::{follow, grip, wait},
-    path::{Path, largest_turn, lift, line},
+    path::{Path, largest_turn, lift},
     stage::PlanningStage,
     transit::WaySearch,
 };
@@ -51,23 +51,6 @@ impl Transfer<'_> {
         follow(stage, self.body, self.limb, &up, SLOW, self.object)
     }
 
-    /// Grasps the object and moves it along a straight line, as a joint allows.
-    pub fn slide(&self, stage: &mut dyn PlanningStage, by: Vec3) -> Result<(), PlanFailure> {
-        let sight = stage.sight().clone();
-        let object = self.seen(&sight)?;
-        let there = Pose::new(object.pose.location + by, object.pose.rotation);
-        self.grasp(stage, &sight, &[Candidate::new(there, 0.0)])?;
-        let sight = stage.sight().clone();
-        let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
-        let here = clearance.here();
-        let mut there = clearance.end_effector(&here);
-        there.location += by;
-        let way = line(&clearance, &here, there).ok_or_else(|| self.no_way())?;
-        follow(stage, self.body, self.limb, &way, 1.5, self.object)?;
-        let opening = stage.sight().limbs[self.limb].opening as f32 + RELEASES[0];
-        self.let_go(stage, opening)
-    }
-
     /// Plans how to grasp the object for one of these goals, and grasps it.
     fn grasp(
         &self,
@@ -79,7 +62,7 @@ impl Transfer<'_> {
         self.take(stage, &taking, &approach)
     }
 
-    fn take(
+    pub(super) fn take(
         &self,
         stage: &mut dyn PlanningStage,
         taking: &Taking,
@@ -116,7 +99,11 @@ impl Transfer<'_> {
         }
     }
 
-    fn let_go(&self, stage: &mut dyn PlanningStage, opening: f32) -> Result<(), PlanFailure> {
+    pub(super) fn let_go(
+        &self,
+        stage: &mut dyn PlanningStage,
+        opening: f32,
+    ) -> Result<(), PlanFailure> {
         let widest = self.body.limbs[self.limb].widest;
         grip(stage, self.limb, f64::from(opening.min(widest)))?;
         self.withdraw(stage)?;

@@ -2,6 +2,7 @@
 
 use std::{cell::Cell, collections::BTreeMap};
 
+use bevy::math::Vec3;
 use tabletop_controller::{Angles, SeenObject, Sight};
 use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_task::angle_between;
@@ -32,6 +33,26 @@ pub(super) struct Taking {
     pub at: Angles,
 }
 
+/// A grasp, and the paths to it.
+pub(super) type Plan = (Taking, [Path; 2]);
+
+impl Taking {
+    /// The cost of the grasp from this posture.
+    fn cost(&self, here: &Angles) -> f32 {
+        let turns = largest_turn(&self.at, here) as f32 / 3.0;
+        let tightness = 2.0 * (OPENINGS[0] + self.grasp.width - self.opening);
+        turns + self.grasp.off + tightness
+    }
+}
+
+/// The number of plans whose paths are searched for.
+const fn most_tries(search: WaySearch) -> usize {
+    match search {
+        WaySearch::Simple => PAIRS,
+        WaySearch::Trying(_) => SEARCHED_PAIRS,
+    }
+}
+
 /// The stages that a plan has passed, from which the reason of a failure follows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Obstructions {
@@ -45,11 +66,25 @@ struct Obstructions {
 
 impl Transfer<'_> {
     /// A grasp from which one of the goals can be reached, and the paths of that transfer.
-    pub(super) fn plan(
+    pub(super) fn plan(&self, sight: &Sight, goals: &[Candidate]) -> Result<Plan, PlanFailure> {
+        self.choose(sight, |takings, search, found| {
+            self.best(sight, takings, goals, search, found)
+        })
+    }
+
+    /// A grasp with which the object can be slid by so much, and the paths to it.
+    pub(super) fn plan_slide(&self, sight: &Sight, by: Vec3) -> Result<Plan, PlanFailure> {
+        self.choose(sight, |takings, search, found| {
+            self.best_to_slide(sight, takings, by, search, found)
+        })
+    }
+
+    /// The first plan of grasps that are looked into some at a time: without a search for paths, then with one.
+    fn choose(
         &self,
         sight: &Sight,
-        goals: &[Candidate],
-    ) -> Result<(Taking, [Path; 2]), PlanFailure> {
+        best: impl Fn(&[Taking], WaySearch, &Cell<Obstructions>) -> Option<Plan>,
+    ) -> Result<Plan, PlanFailure> {
         let object = self.seen(sight)?;
         let all = self.grasps(object);
         if all.is_empty() {
@@ -59,7 +94,7 @@ impl Transfer<'_> {
         let mut looked_into = Vec::new();
         for some in all.chunks(GRASPS) {
             let takings = self.takings(sight, object, some, &found);
-            if let Some(plan) = self.best(sight, &takings, goals, WaySearch::Simple, &found) {
+            if let Some(plan) = best(&takings, WaySearch::Simple, &found) {
                 return Ok(plan);
             }
             looked_into.push(takings);
@@ -67,7 +102,7 @@ impl Transfer<'_> {
         let search = WaySearch::Trying(self.seed);
         let searched = looked_into
             .iter()
-            .find_map(|takings| self.best(sight, takings, goals, search, &found));
+            .find_map(|takings| best(takings, search, &found));
         searched.ok_or_else(|| self.failure(sight, found.get()))
     }
 
@@ -205,28 +240,23 @@ impl Transfer<'_> {
         goals: &[Candidate],
         search: WaySearch,
         found: &Cell<Obstructions>,
-    ) -> Option<(Taking, [Path; 2])> {
+    ) -> Option<Plan> {
         let object = self.seen(sight).ok()?;
         let here = sight.limbs[self.limb].angles;
         let mut pairs = Vec::new();
         for (i, taking) in takings.iter().enumerate() {
-            let turns = largest_turn(&taking.at, &here) as f32 / 3.0;
             let taken = object.pose * taking.grasp.end_effector;
-            let tightness = 2.0 * (OPENINGS[0] + taking.grasp.width - taking.opening);
             for goal in goals {
                 let put = goal.pose * taking.grasp.end_effector;
                 let turned = angle_between(taken.rotation, put.rotation) / 1.5;
-                let cost = turns + turned + goal.cost + taking.grasp.off + tightness;
+                let cost = taking.cost(&here) + turned + goal.cost;
                 pairs.push((cost, i, *goal));
             }
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut approaches = BTreeMap::new();
         let mut lifts = BTreeMap::new();
-        let mut tries = match search {
-            WaySearch::Simple => PAIRS,
-            WaySearch::Trying(_) => SEARCHED_PAIRS,
-        };
+        let mut tries = most_tries(search);
         for (_, i, goal) in pairs {
             let taking = &takings[i];
             let grip = taking.grasp.end_effector.inverse();
@@ -272,6 +302,36 @@ impl Transfer<'_> {
             }
         }
         None
+    }
+
+    /// The first grasp, by its cost, with which the object can be slid by so much, and the paths to it.
+    fn best_to_slide(
+        &self,
+        sight: &Sight,
+        takings: &[Taking],
+        by: Vec3,
+        search: WaySearch,
+        found: &Cell<Obstructions>,
+    ) -> Option<Plan> {
+        let here = sight.limbs[self.limb].angles;
+        let mut sorted: Vec<_> = takings.iter().collect();
+        sorted.sort_by(|a, b| a.cost(&here).total_cmp(&b.cost(&here)));
+        let slid = sorted.into_iter().filter(|taking| {
+            let width = taking.grasp.width;
+            let Some(way) = self.way_along(sight, &taking.at, by) else {
+                return false;
+            };
+            found.set(Obstructions {
+                put: true,
+                ..found.get()
+            });
+            self.release_along(sight, &taking.at, &way, width, by)
+                .is_some()
+        });
+        slid.take(most_tries(search)).find_map(|taking| {
+            let approach = self.approach(sight, taking, search)?;
+            Some((*taking, approach))
+        })
     }
 
     /// True if fingers at this opening are beside the object, not inside another part of it.

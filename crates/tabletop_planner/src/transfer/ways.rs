@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Openings of the fingers for a release, in units beyond the held width. The first that has room is used.
-pub(super) const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
+const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
 /// Distances by which an arm withdraws from a released object, in units: rather more than less.
 const BACK: [f32; 3] = [1.4, 1.0, 0.6];
 
@@ -146,15 +146,9 @@ impl Transfer<'_> {
         if !holding.is_free(put, Margins::NARROW) {
             return None;
         }
-        let end = holding.end_effector(put);
-        let widest = self.body.limbs[self.limb].widest;
-        let opening = RELEASES
-            .into_iter()
-            .map(|more| (holding.opening + more).min(widest))
-            .find(|opening| holding.has_room_for_fingers(end, *opening, BESIDE))?;
         let there = self.seen(sight).ok()?.solids_at(goal.pose);
-        let released = Clearance::new(self.body, sight, self.limb, &[self.object]);
-        back(&released.taking(there).opened(opening), put)?;
+        let released = Clearance::new(self.body, sight, self.limb, &[self.object]).taking(there);
+        let opening = self.release(released, put, holding.opening)?;
         let by = self.height(sight, goal.pose);
         [by, by + 0.5, (by - 0.4).max(0.3)]
             .into_iter()
@@ -167,6 +161,17 @@ impl Transfer<'_> {
                 let down = up.iter().rev().skip(1).chain([put]).copied().collect();
                 Some(Placing { way, down, opening })
             })
+    }
+
+    /// Opening of the fingers, in units, at which the arm can let go of a part of this width and withdraw.
+    pub(super) fn release(&self, released: Clearance, at: &Angles, width: f32) -> Option<f32> {
+        let end = released.end_effector(at);
+        let widest = self.body.limbs[self.limb].widest;
+        let openings = RELEASES.map(|more| (width + more).min(widest));
+        let opening = openings
+            .into_iter()
+            .find(|opening| released.has_room_for_fingers(end, *opening, BESIDE))?;
+        back(&released.opened(opening), at).map(|_| opening)
     }
 }
 
