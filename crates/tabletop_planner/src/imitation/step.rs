@@ -8,9 +8,9 @@ use tabletop_task::{Relation, TaskStep};
 use super::{Imitator, clearing::MOST_CLEARED, slider::Slider};
 use crate::{
     failure::PlanFailure,
-    goals::{Candidate, Placement, bound, candidates, inside, is_inside},
+    goals::{Candidate, Placement, bound, candidates, fits_inside, inside, is_inside},
     grasp::GraspSide,
-    sight::{Solids as _, heights},
+    sight::{Arranged as _, Solids as _, heights},
     stage::PlanningStage,
 };
 
@@ -183,7 +183,13 @@ impl Imitator<'_> {
                 place.cost += COST_OF_CROWDING * crowded.count() as f32;
             }
         }
-        places.extend(self.above_rim(sight, step, &goals));
+        let mut free = places.clone();
+        free.retain(|place| self.is_free_inside(sight, step, place.pose));
+        let falls = match free.is_empty() {
+            true => &goals,
+            false => &free,
+        };
+        places.extend(self.above_rim(sight, step, falls));
         Ok(places)
     }
 
@@ -210,7 +216,14 @@ impl Imitator<'_> {
         Ok(places.collect())
     }
 
-    /// Places above a container from which an object falls into it.
+    /// True if a step's object fits into its container at this pose, beside what is in there.
+    fn is_free_inside(&self, sight: &Sight, step: &TaskStep, pose: Pose) -> bool {
+        let object = self.binding.object(&step.object);
+        object.is_some_and(|id| sight.occupant(id, pose, &[]).is_none())
+            && fits_inside(step, self.binding, sight, pose)
+    }
+
+    /// Places above a container from which an object falls to these.
     fn above_rim(&self, sight: &Sight, step: &TaskStep, goals: &[Candidate]) -> Vec<Candidate> {
         let container = step.relations.first().and_then(Relation::object);
         let container = container.and_then(|role| self.binding.object(role));
