@@ -44,6 +44,17 @@ for reader in "$@"; do
       python=$(python_with lerobot lerobot) || exit 3
       "$python" "$readers/read_lerobot.py" "$work/lerobot" "${recordings[@]}"
       "$python" "$readers/read_lerobot.py" "$work/lerobot_video" "${recordings[@]}"
+      # What is done to videos and to PNG files gives the same frames.
+      "$program" export "$work/many" --to lerobot "$work/lerobot_small" --no-language --fps 10 --size 96x72 >/dev/null
+      for set in lerobot_video lerobot_small; do
+        "$program" dataset drop "$work/$set" "$work/$set.drop" --episodes 1 >/dev/null
+        "$program" dataset merge "$work/$set" "$work/$set.drop" --out "$work/$set.merge" >/dev/null
+        "$program" dataset split "$work/$set" "$work/$set.split" --into train=3,valid=1 >/dev/null
+        "$program" dataset trim "$work/$set" "$work/$set.trim" >/dev/null
+      done
+      for part in drop merge split/train split/valid trim; do
+        "$python" "$readers/compare_lerobot.py" "$work/lerobot_video.$part" "$work/lerobot_small.$part"
+      done
       ;;
     robomimic)
       python=$(python_with robomimic torch torchvision h5py tensorboardX psutil termcolor imageio tqdm) || exit 3

@@ -125,7 +125,8 @@ fn failed(error: FilmError) -> Failure {
         FilmError::Recording(_)
         | FilmError::Replay(_)
         | FilmError::NoCamera { .. }
-        | FilmError::Size { .. } => Failure::input(error),
-        FilmError::Failed(_) => Failure::run(error),
+        | FilmError::Size { .. }
+        | FilmError::Foreign(_) => Failure::input(error),
+        FilmError::Unreadable(_) | FilmError::Failed(_) => Failure::run(error),
     }
 }

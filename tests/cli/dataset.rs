@@ -209,3 +209,84 @@ fn lerobot_datasets_are_described_divided_and_repaired() {
         "Nothing to repair.\n3 episodes.\n"
     );
 }
+
+#[test]
+fn lerobot_datasets_with_videos_are_divided_without_being_decoded() {
+    let many = many("dataset_video");
+    let [videos, pictures, both, split, rest] = ["set", "pictures", "both", "split", "rest"]
+        .map(|name| path(&format!("dataset_video_{name}")));
+    let size = ["--size", "48x36"];
+    done(
+        &[
+            &["export", &many, "--to", "lerobot", &videos, "--video"],
+            &size[..],
+        ]
+        .concat(),
+    );
+    done(&[&["export", &many, "--to", "lerobot", &pictures], &size[..]].concat());
+    let before = files(&videos);
+    let described = |folder: &str, what: &str| done(&["dataset", what, folder]);
+    assert!(described(&videos, "info").contains("cameras   1 (head)"));
+    assert_eq!(described(&videos, "stats"), described(&pictures, "stats"));
+    assert_eq!(described(&videos, "check"), "3 episodes, nothing wrong.\n");
+
+    done(&["dataset", "drop", &videos, &rest, "--episodes", "1"]);
+    assert_eq!(described(&rest, "check"), "2 episodes, nothing wrong.\n");
+    done(&["dataset", "split", &videos, &split, "--into", "a=2,b=1"]);
+    let halves = ["a", "b"].map(|half| format!("{split}/{half}"));
+    assert_eq!(
+        described(&halves[0], "check"),
+        "2 episodes, nothing wrong.\n"
+    );
+    done(&["dataset", "merge", &halves[0], &halves[1], "--out", &both]);
+    assert_eq!(described(&both, "check"), "3 episodes, nothing wrong.\n");
+    let output = tabletop(&[
+        "dataset",
+        "merge",
+        &videos,
+        &pictures,
+        "--out",
+        &path("dataset_video_mixed"),
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(said.contains("its observation.images.head is"), "{said}");
+    assert_eq!(files(&videos), before, "the source stays as it is");
+
+    let card = done(&["dataset", "card", &videos]);
+    let card = fs::read_to_string(card.trim()).unwrap();
+    assert!(card.contains("- robotics"), "{card}");
+
+    let video = "videos/observation.images.head/chunk-000/file-000.mp4";
+    fs::write(Path::new(&rest).join(video), &before[video]).unwrap();
+    let output = tabletop(&["dataset", "check", &rest]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stdout(&output);
+    assert!(
+        said.contains("frames are not those of its episodes"),
+        "{said}"
+    );
+}
+
+#[test]
+fn still_ends_of_videos_are_cut_off_where_the_rest_can_be_decoded() {
+    // Motions that begin a frame apart: before one of them is a frame that needs the one before it.
+    for wait in ["3", "3.25"] {
+        let name = |what: &str| format!("dataset_still_video_{wait}{what}");
+        let steps = format!(
+            r#"Start, Wait({wait}), Grasp("RedBlock"), Glide(to: (3, -2.5, 4), seconds: 0.5), Glide(to: (3, -2.5, 1.1), seconds: 0.5), Release, Wait(5), Finish"#
+        );
+        let scenario = crate::support::scenario(&name(".ron"), &steps);
+        let demo = crate::support::record(scenario.to_str().unwrap(), &name(""));
+        let [set, trimmed] = ["_set", "_trimmed"].map(|what| path(&name(what)));
+        done(&[
+            "export", &demo, "--to", "lerobot", &set, "--video", "--size", "48x36",
+        ]);
+        let said = done(&["dataset", "trim", &set, &trimmed]);
+        assert!(said.starts_with("1 episodes, "), "{said}");
+        assert_eq!(
+            done(&["dataset", "check", &trimmed]),
+            "1 episodes, nothing wrong.\n"
+        );
+    }
+}

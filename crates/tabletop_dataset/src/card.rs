@@ -80,8 +80,7 @@ fn shown_episodes(dataset: &DatasetFolder) -> Result<Vec<ShownEpisode>, DatasetE
             }
         }
         DatasetContent::LeRobot(reader) => {
-            let mut number = 0;
-            reader.visit(|episode| {
+            reader.visit_tables(|number, episode| {
                 let camera = episode.cameras.first().map(|camera| &camera.images);
                 if let Some([first, .., last]) = camera.map(Vec::as_slice)
                     && shown.len() < SHOWN_EPISODES
@@ -91,7 +90,6 @@ fn shown_episodes(dataset: &DatasetFolder) -> Result<Vec<ShownEpisode>, DatasetE
                         pictures: [first.png.clone(), last.png.clone()],
                     });
                 }
-                number += 1;
                 Ok::<_, DatasetError>(())
             })?;
         }

@@ -8,11 +8,12 @@ mod poses;
 pub use finding::Finding;
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     hash::{DefaultHasher, Hash as _, Hasher as _},
     path::{Path, PathBuf},
 };
 
+use tabletop_export::DatasetVideos;
 use tabletop_recorder::RecordingReader;
 use tabletop_storage::Storage;
 
@@ -60,9 +61,26 @@ pub fn check(
         DatasetContent::LeRobot(reader) => {
             findings.place.clone_from(&dataset.path);
             let (mut episodes, mut frames) = (0, 0);
-            let visited = reader.visit(|episode| {
+            let mut videos = match reader.videos() {
+                Ok(videos) => Some(videos),
+                Err(error) => {
+                    findings.add(error);
+                    None
+                }
+            };
+            let mut faults = BTreeSet::new();
+            let visited = reader.visit_tables(|number, episode| {
                 episodes += 1;
                 frames += episode.len();
+                let of_videos = videos.iter_mut();
+                for fault in of_videos.flat_map(|it| it.faults(number, episode.len())) {
+                    // That of a whole video is that of all its episodes.
+                    let fault = fault.to_string();
+                    if faults.insert(fault.clone()) {
+                        findings.place.clone_from(&dataset.path);
+                        findings.add(fault);
+                    }
+                }
                 findings.place.clone_from(&episode.folder);
                 jumps_between_frames(&episode, &mut findings);
                 let values = episode.state.values.iter().chain(&episode.action.values);
@@ -76,6 +94,9 @@ pub fn check(
             findings.place.clone_from(&dataset.path);
             if let Err(error) = visited {
                 findings.add(error);
+            }
+            for stray in videos.iter_mut().flat_map(DatasetVideos::strays) {
+                findings.add(stray);
             }
             let said = (reader.episodes(), reader.frames());
             if (episodes, frames) != said {

@@ -93,7 +93,7 @@ pub fn statistics(
                 }
             }
         }
-        DatasetContent::LeRobot(reader) => reader.visit(|episode| {
+        DatasetContent::LeRobot(reader) => reader.visit_tables(|_, episode| {
             add("episode [s]", episode.len() as f64 / f64::from(episode.fps));
             for (kind, signal) in [("state", &episode.state), ("action", &episode.action)] {
                 for frame in signal.frames() {

@@ -148,9 +148,19 @@ fn trim_episode(episode: TrainingEpisode) -> TrainingEpisode {
     let (Some(first), Some(last)) = (changes.first(), changes.last()) else {
         return episode;
     };
-    let from = first.saturating_sub(margin + 1);
+    let from = decodable(&episode, first.saturating_sub(margin + 1));
     let until = (last + margin).min(episode.len().saturating_sub(1));
     sliced(episode, from, until + 1)
+}
+
+/// The last frame up to this one from which on every video of an episode can be decoded.
+fn decodable(episode: &TrainingEpisode, frame: usize) -> usize {
+    let videos = || episode.cameras.iter().filter_map(|it| it.video.as_ref());
+    let is_key = |&frame: &usize| {
+        let mut packets = videos().map(|video| video.packets.get(frame));
+        packets.all(|packet| packet.is_some_and(|packet| packet.is_key))
+    };
+    (0..=frame).rev().find(is_key).unwrap_or(0)
 }
 
 /// The frames of an episode from one to before another.
@@ -165,11 +175,12 @@ fn sliced(mut episode: TrainingEpisode, from: usize, until: usize) -> TrainingEp
         signal.values = signal.values[from * width..until * width].to_vec();
     }
     for camera in &mut episode.cameras {
-        camera.images = camera.images[from..until].to_vec();
+        camera.images = between_frames(&camera.images, from, until);
         camera.depths = between_frames(&camera.depths, from, until);
         camera.ids = between_frames(&camera.ids, from, until);
-        // Its frames depend on each other.
-        camera.video = None;
+        if let Some(video) = &mut camera.video {
+            video.packets = between_frames(&video.packets, from, until);
+        }
     }
     for object in &mut episode.objects {
         object.poses = object.poses[from..until].to_vec();

@@ -189,7 +189,11 @@ impl EncodedVideo {
             })?);
         }
         packets.extend(encoder.finish()?);
-        Ok(Self { track, packets })
+        Ok(Self {
+            track,
+            packets,
+            colors: None,
+        })
     }
 }
 

@@ -6,7 +6,7 @@ use tabletop_core::{ObjectSpec, SimTick};
 use tabletop_film::{VideoPacket, VideoTrack};
 use tabletop_geometry::Pose;
 
-use crate::{image::Image, selection::ActionKind};
+use crate::{feature_stats::FeatureStats, image::Image, selection::ActionKind};
 
 /// A recording as a learner reads it.
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ pub struct ObjectTrack {
 pub struct CameraTrack {
     /// The camera's name: `head`, or that of a hand camera.
     pub name: String,
-    /// The pictures. Frames in which nothing has changed share one.
+    /// The pictures; none if they are known only as a video. Frames in which nothing has changed share one.
     pub images: Vec<Arc<Image>>,
     /// Distances of each pixel along the axis of view in m, 0 where nothing is: one for each picture, or none at all.
     pub depths: Vec<Arc<Vec<f32>>>,
@@ -76,6 +76,8 @@ pub struct EncodedVideo {
     pub track: VideoTrack,
     /// Its frames.
     pub packets: Vec<VideoPacket>,
+    /// The statistics of its colours, if they are known only from before it was encoded.
+    pub(crate) colors: Option<FeatureStats>,
 }
 
 /// A part of a task.
@@ -96,6 +98,18 @@ impl TrainingEpisode {
     /// True if there is no frame.
     pub fn is_empty(&self) -> bool {
         self.ticks.is_empty()
+    }
+}
+
+impl CameraTrack {
+    /// Rows and columns of a picture.
+    pub fn size(&self) -> [u32; 2] {
+        let of_image = self.images.first().map(|image| [image.height, image.width]);
+        let of_video = || {
+            let video = self.video.as_ref()?;
+            Some([video.track.height, video.track.width])
+        };
+        of_image.or_else(of_video).unwrap_or_default()
     }
 }
 

@@ -14,10 +14,12 @@
 mod columns;
 mod commit;
 mod data_file;
+mod dataset_videos;
 mod episode_table;
 mod info;
 mod language;
 mod place;
+mod read_columns;
 mod reader;
 mod stats;
 mod table;
@@ -37,13 +39,13 @@ use self::{
     episode_table::{EpisodeRow, VideoPart},
     info::{Info, feature_of_camera},
     place::DataPlace,
-    stats::FeatureStats,
     video_file::VideoFile,
 };
-pub use self::{commit::PendingCommit, reader::LeRobotReader};
+pub use self::{commit::PendingCommit, dataset_videos::DatasetVideos, reader::LeRobotReader};
 use crate::{
     episode::{EncodedVideo, TrainingEpisode},
     error::ExportError,
+    feature_stats::FeatureStats,
     format::DatasetFormat,
 };
 

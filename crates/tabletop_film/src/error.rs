@@ -33,6 +33,12 @@ pub enum FilmError {
         /// The sizes that it can have.
         expected: &'static str,
     },
+    /// A file is no video that this program makes.
+    #[error("it is no video as this program makes them: {0}")]
+    Foreign(String),
+    /// A video cannot be read.
+    #[error(transparent)]
+    Unreadable(#[from] std::io::Error),
     /// The pictures cannot be drawn or encoded.
     #[error("the pictures cannot be made: {0}")]
     Failed(String),

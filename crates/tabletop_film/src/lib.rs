@@ -21,6 +21,7 @@ mod error;
 mod film;
 mod footage;
 mod mp4;
+mod mp4_reader;
 mod pace;
 mod video;
 
@@ -30,5 +31,6 @@ pub use error::FilmError;
 pub use film::{Film, FilmFormat};
 pub use footage::{Footage, SeenThing, Shot};
 pub use mp4::Mp4Writer;
+pub use mp4_reader::Mp4Reader;
 pub use pace::FilmPace;
 pub use video::{VideoEncoder, VideoPacket, VideoTrack};

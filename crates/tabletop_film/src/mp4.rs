@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Units of time a frame: rates of frames that are not whole numbers of milliseconds keep exact times when files are joined.
-const UNITS_PER_FRAME: u32 = 1000;
+pub(crate) const UNITS_PER_FRAME: u32 = 1000;
 
 /// The parts of an MP4 file with one AV1 track, in their order. Frame `k` is shown at `k / fps` seconds exactly: there is no edit list.
 #[derive(Clone, Debug)]
@@ -99,24 +99,9 @@ impl Mp4Writer {
         let VideoTrack { width, height, fps } = self.track;
         let timescale = fps * UNITS_PER_FRAME;
         let duration = self.sizes.len() as u64 * u64::from(UNITS_PER_FRAME);
-        let side = |side: u32| u16::try_from(side).map_err(failed);
         let [width, height] = [side(width)?, side(height)?];
         let table = Stbl {
-            stsd: Stsd {
-                codecs: vec![
-                    Av01 {
-                        visual: Visual {
-                            data_reference_index: 1,
-                            width,
-                            height,
-                            ..Default::default()
-                        },
-                        av1c: self.track.configuration(),
-                        ..Default::default()
-                    }
-                    .into(),
-                ],
-            },
+            stsd: self.track.description()?,
             stts: Stts {
                 entries: vec![SttsEntry {
                     sample_count: self.sizes.len() as u32,
@@ -209,6 +194,26 @@ impl Mp4Writer {
 }
 
 impl VideoTrack {
+    /// How the frames of a file are encoded.
+    ///
+    /// # Errors
+    /// A side is too long.
+    pub(crate) fn description(&self) -> Result<Stsd, FilmError> {
+        let video = Av01 {
+            visual: Visual {
+                data_reference_index: 1,
+                width: side(self.width)?,
+                height: side(self.height)?,
+                ..Default::default()
+            },
+            av1c: self.configuration(),
+            ..Default::default()
+        };
+        Ok(Stsd {
+            codecs: vec![video.into()],
+        })
+    }
+
     /// What a player must know before the first frame: profile 0 (8 bits, 4:2:0), any level.
     fn configuration(&self) -> Av1c {
         Av1c {
@@ -219,6 +224,10 @@ impl VideoTrack {
             ..Default::default()
         }
     }
+}
+
+fn side(side: u32) -> Result<u16, FilmError> {
+    u16::try_from(side).map_err(failed)
 }
 
 fn failed(error: impl ToString) -> FilmError {

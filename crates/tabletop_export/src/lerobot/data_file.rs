@@ -130,10 +130,7 @@ fn columns_of(episode: &TrainingEpisode, row: &EpisodeRow, has_language: bool) -
         ));
     }
     for camera in &episode.cameras {
-        let size = camera.images.first();
-        let size = size.map_or([0, 0], |image| {
-            [image.height as usize, image.width as usize]
-        });
+        let size = camera.size().map(|side| side as usize);
         if !camera.depths.is_empty() {
             let values = camera
                 .depths

@@ -1,17 +1,25 @@
 //! `meta/episodes/chunk-XXX/file-XXX.parquet`: a row an episode.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
-use arrow::{array::Int64Array, error::ArrowError};
-use parquet::arrow::ArrowWriter;
+use arrow::{
+    array::{Int64Array, RecordBatch},
+    datatypes::{ArrowPrimitiveType, Float64Type, Int64Type},
+    error::ArrowError,
+};
+use parquet::arrow::{ArrowWriter, arrow_reader::ParquetRecordBatchReaderBuilder};
+use tabletop_storage::{Symlinks, open_regular_file};
 
 use super::{
     columns::{self, Column},
     place::DataPlace,
-    stats::{FeatureStats, QUANTILES},
+    read_columns::rows_of,
     table::{batch, properties},
 };
-use crate::error::ExportError;
+use crate::{
+    error::ExportError,
+    feature_stats::{FeatureStats, QUANTILES},
+};
 
 /// An episode in the table.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,6 +102,111 @@ fn table(rows: &[EpisodeRow], place: DataPlace) -> Result<Vec<u8>, ArrowError> {
     writer.write(&batch)?;
     writer.close()?;
     Ok(bytes)
+}
+
+/// The videos of each episode with the statistics of their colours, by the episode's number and the feature. `files` is the number of files of frames:
+/// each may have a table of the same place.
+pub(super) fn read_videos(
+    folder: &Path,
+    features: &[String],
+    files: usize,
+) -> Result<BTreeMap<usize, ShownVideos>, ExportError> {
+    let mut all = BTreeMap::new();
+    for number in 0..files {
+        let path = folder.join(DataPlace::of(number).path("meta/episodes", "parquet"));
+        if !path.exists() {
+            continue;
+        }
+        let fault = |problem: &dyn ToString| ExportError::dataset(&path, problem.to_string());
+        let file = open_regular_file(&path, Symlinks::Followed).map_err(ExportError::io(&path))?;
+        let batches = ParquetRecordBatchReaderBuilder::try_new(file).and_then(|file| file.build());
+        for batch in batches.map_err(|error| fault(&error))? {
+            let batch = batch.map_err(|error| fault(&error))?;
+            for row in 0..batch.num_rows() {
+                let numbered = TableRow { batch: &batch, row };
+                let (number, videos) = numbered.videos(features).map_err(|it| fault(&it))?;
+                if all.insert(number, videos).is_some() {
+                    return Err(fault(&format!("it has episode {number} again")));
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The videos that show an episode, by their features.
+pub(super) type ShownVideos = BTreeMap<String, (VideoPart, FeatureStats)>;
+
+/// A row of a table that is read.
+struct TableRow<'b> {
+    batch: &'b RecordBatch,
+    row: usize,
+}
+
+impl TableRow<'_> {
+    fn videos(&self, features: &[String]) -> Result<(usize, ShownVideos), String> {
+        let videos = features.iter().map(|feature| {
+            let place = DataPlace {
+                chunk: self.count(&format!("videos/{feature}/chunk_index"))?,
+                file: self.count(&format!("videos/{feature}/file_index"))?,
+            };
+            let time = |name: &str| {
+                let name = format!("videos/{feature}/{name}");
+                self.one::<Float64Type>(&name)
+            };
+            let times = [time("from_timestamp")?, time("to_timestamp")?];
+            Ok((
+                feature.clone(),
+                (VideoPart { place, times }, self.stats(feature)?),
+            ))
+        });
+        let videos = videos.collect::<Result<_, String>>()?;
+        Ok((self.count("episode_index")?, videos))
+    }
+
+    /// The statistics of a feature's colours.
+    fn stats(&self, feature: &str) -> Result<FeatureStats, String> {
+        let column = |name: &str| format!("stats/{feature}/{name}");
+        let numbers = |name: &str| self.numbers::<Float64Type>(&column(name));
+        let [q01, q10, q50, q90, q99] = QUANTILES.map(|(name, _)| numbers(name));
+        let all = FeatureStats {
+            min: numbers("min")?,
+            max: numbers("max")?,
+            mean: numbers("mean")?,
+            std: numbers("std")?,
+            count: self.count(&column("count"))? as u64,
+            quantiles: [q01?, q10?, q50?, q90?, q99?],
+            is_of_pictures: true,
+        };
+        let of_colors = [&all.min, &all.max, &all.mean, &all.std];
+        let is_of_colors = |numbers: &Vec<f64>| numbers.len() == 3;
+        if !of_colors.into_iter().all(is_of_colors) || !all.quantiles.iter().all(is_of_colors) {
+            let problem = format!("the statistics of {feature} are not those of three colours");
+            return Err(problem);
+        }
+        Ok(all)
+    }
+
+    /// The numbers of a column.
+    fn numbers<N: ArrowPrimitiveType>(&self, name: &str) -> Result<Vec<N::Native>, String> {
+        let row = self.batch.slice(self.row, 1);
+        let numbers = rows_of::<N>(&row, name)?.into_iter().next();
+        numbers.ok_or_else(|| format!("there is no column {name}"))
+    }
+
+    /// The only number of a column.
+    fn one<N: ArrowPrimitiveType>(&self, name: &str) -> Result<N::Native, String> {
+        match self.numbers::<N>(name)?.as_slice() {
+            [number] => Ok(*number),
+            numbers => Err(format!("{name} has {} numbers, expected 1", numbers.len())),
+        }
+    }
+
+    /// The only number of a column, from 0 on.
+    fn count(&self, name: &str) -> Result<usize, String> {
+        let number = self.one::<Int64Type>(name)?;
+        usize::try_from(number).map_err(|_| format!("{name} is {number}, expected 0 or more"))
+    }
 }
 
 /// The columns of a feature's statistics.

@@ -79,6 +79,12 @@ impl Info {
         &self.features
     }
 
+    /// The features that are videos.
+    pub fn videos(&self) -> impl Iterator<Item = &String> {
+        let features = self.features.iter();
+        features.filter_map(|(name, feature)| (feature["dtype"] == "video").then_some(name))
+    }
+
     /// Frames a second.
     pub const fn fps(&self) -> u64 {
         self.fps
@@ -126,12 +132,10 @@ impl Info {
 
     /// The text of the file.
     pub fn write(&self) -> Vec<u8> {
-        let is_video = |feature: &Value| feature["dtype"] == "video";
         let video_path = self
-            .features
-            .values()
-            .any(is_video)
-            .then_some("videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4");
+            .videos()
+            .next()
+            .map(|_| "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4");
         let defaults = json!({
             "codebase_version": "v3.0",
             "fps": self.fps,
@@ -175,10 +179,7 @@ fn features_of(episode: &TrainingEpisode, has_language: bool) -> Map<String, Val
         );
     }
     for camera in &episode.cameras {
-        let size = camera
-            .images
-            .first()
-            .map_or([0, 0], |image| [image.height, image.width]);
+        let size = camera.size();
         let mut feature = json!({
             "dtype": "image",
             "shape": [size[0], size[1], 3],
@@ -195,10 +196,7 @@ fn features_of(episode: &TrainingEpisode, has_language: bool) -> Map<String, Val
         features.insert(feature_of_camera(&camera.name), feature);
     }
     for camera in &episode.cameras {
-        let size = camera
-            .images
-            .first()
-            .map(|image| [image.height, image.width]);
+        let size = camera.size();
         for (name, dtype) in raw_features(camera) {
             let feature = json!({ "dtype": dtype, "shape": size, "names": ["height", "width"] });
             features.insert(name, feature);

@@ -12,7 +12,7 @@ pub(super) const MOST_VIDEO_BYTES: u64 = 200_000_000;
 pub(super) const FILES_PER_CHUNK: usize = 1000;
 
 /// The place of a file among those of its kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct DataPlace {
     pub chunk: usize,
     pub file: usize,

@@ -1,23 +1,26 @@
 //! LeRobot datasets, read back: episode after episode.
 
 use std::{
+    ffi::OsStr,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use arrow::{
-    array::{Array, ArrayRef, AsArray as _, RecordBatch},
-    datatypes::{ArrowPrimitiveType, Float32Type, Int32Type, Int64Type},
+    array::{Array as _, ArrayRef, AsArray as _, RecordBatch},
+    datatypes::{Float32Type, Int32Type},
 };
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-use serde_json::Value;
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
 use tabletop_storage::{Storage, Symlinks, open_regular_file};
 
 use super::{
     commit::{Commit, PendingCommit},
-    info::{Info, feature_of_depth, feature_of_ids},
-    place, task_table,
+    dataset_videos::DatasetVideos,
+    info::{Info, feature_of_camera, feature_of_depth, feature_of_ids},
+    place,
+    read_columns::{column, rows_of, whole_numbers},
+    task_table,
 };
 use crate::{
     episode::{CameraTrack, FrameVectors, Subtask, TrainingEpisode},
@@ -29,7 +32,7 @@ use crate::{
 /// The beginning of the name of a camera's feature.
 const CAMERA: &str = "observation.images.";
 
-/// A LeRobot dataset (v3.0) whose pictures are in the table of frames, to be read. Nothing in it is changed.
+/// A LeRobot dataset (v3.0), to be read. Nothing in it is changed. Pictures in the table of frames are decoded, videos are only copied.
 #[derive(Clone, Debug)]
 pub struct LeRobotReader {
     folder: PathBuf,
@@ -49,7 +52,7 @@ impl LeRobotReader {
     /// Opens a dataset.
     ///
     /// # Errors
-    /// It is none, an export to it was cut off, or its pictures are videos.
+    /// It is none, or an export to it was cut off.
     pub fn open(folder: &Path) -> Result<Self, ExportError> {
         if let Some(pending) = Commit::pending(folder, &Storage::default())? {
             return Err(ExportError::dataset(folder, pending.problem()));
@@ -60,9 +63,9 @@ impl LeRobotReader {
                 "it is no LeRobot dataset: there is no meta/info.json",
             ));
         };
-        let is_video = |feature: &Value| feature["dtype"] == "video";
-        if let Some((name, _)) = info.features().iter().find(|(_, it)| is_video(it)) {
-            let problem = format!("its {name} are videos, which are not read back");
+        let is_folder = |name: &str| Path::new(name).file_name() == Some(OsStr::new(name));
+        if let Some(name) = info.videos().find(|name| !is_folder(name)) {
+            let problem = format!("the videos of {name:?} can have no folder of that name");
             return Err(ExportError::dataset(folder, problem));
         }
         Ok(Self {
@@ -103,6 +106,15 @@ impl LeRobotReader {
         self.info.has_language()
     }
 
+    /// Its videos; none if all pictures are in the table of frames.
+    ///
+    /// # Errors
+    /// The table of episodes cannot be read, or does not say where the videos of each are.
+    pub fn videos(&self) -> Result<DatasetVideos, ExportError> {
+        let features = self.info.videos().cloned().collect();
+        DatasetVideos::open(&self.folder, features, self.files, self.fps())
+    }
+
     /// The names of the numbers of a frame's state.
     pub fn state_names(&self) -> Vec<String> {
         self.names().state
@@ -139,6 +151,24 @@ impl LeRobotReader {
         &self,
         mut visit: impl FnMut(TrainingEpisode) -> Result<(), E>,
     ) -> Result<(), E> {
+        let mut videos = self.videos()?;
+        self.visit_tables(|number, mut episode| {
+            for camera in &mut episode.cameras {
+                let feature = feature_of_camera(&camera.name);
+                camera.video = videos.copy(&feature, number, episode.ticks.len())?;
+            }
+            visit(episode)
+        })
+    }
+
+    /// Hands over the numbers of its episodes and the episodes, without their videos.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit).
+    pub fn visit_tables<E: From<ExportError>>(
+        &self,
+        mut visit: impl FnMut(usize, TrainingEpisode) -> Result<(), E>,
+    ) -> Result<(), E> {
         let names = self.names();
         for number in 0..self.files {
             let path = self
@@ -161,29 +191,38 @@ impl LeRobotReader {
                 let batches = batches.map_err(|error| ExportError::dataset(&path, error))?;
                 for batch in &batches {
                     let episode = self.episode(batch, &names);
-                    let episode = episode.map_err(|problem| {
+                    let (number, episode) = episode.map_err(|problem| {
                         ExportError::dataset(&path, format!("row group {group}: {problem}"))
                     })?;
-                    visit(episode)?;
+                    visit(number, episode)?;
                 }
             }
         }
         Ok(())
     }
 
-    fn episode(&self, batch: &RecordBatch, names: &Names) -> Result<TrainingEpisode, String> {
+    fn episode(
+        &self,
+        batch: &RecordBatch,
+        names: &Names,
+    ) -> Result<(usize, TrainingEpisode), String> {
         let numbers = whole_numbers(batch, "episode_index")?;
         let number = *numbers.first().ok_or("it has no frame")?;
         if numbers.iter().any(|other| *other != number) {
             return Err("it has frames of several episodes".into());
         }
+        let number = usize::try_from(number).map_err(|_| "its episode has a number below 0")?;
         let task = *whole_numbers(batch, "task_index")?
             .first()
             .ok_or("it has no frame")?;
         let task = usize::try_from(task).ok().and_then(|it| self.tasks.get(it));
         let frames = batch.num_rows();
         let cameras = names.cameras.iter().map(|camera| {
-            let images = images(column(batch, &format!("{CAMERA}{camera}"))?)?;
+            let feature = feature_of_camera(camera);
+            let images = match self.info.videos().any(|video| *video == feature) {
+                true => Vec::new(),
+                false => images(column(batch, &feature)?)?,
+            };
             let name = camera.clone();
             let depths = rows_of::<Float32Type>(batch, &feature_of_depth(camera))?;
             let ids = rows_of::<Int32Type>(batch, &feature_of_ids(camera))?;
@@ -202,7 +241,7 @@ impl LeRobotReader {
         let ticks_per_frame = u64::from(TICKS_PER_SECOND) / u64::from(self.fps());
         let (paraphrases, subtasks) = self.language(batch)?;
         let is_hand = |name: &String| name.ends_with("_hand.grip");
-        Ok(TrainingEpisode {
+        let episode = TrainingEpisode {
             folder: self.folder.join(format!("episode {number}")),
             fps: self.fps(),
             ticks: (0..frames as u64)
@@ -221,7 +260,8 @@ impl LeRobotReader {
                 .clone(),
             paraphrases,
             subtasks,
-        })
+        };
+        Ok((number, episode))
     }
 
     /// Other words for the task, and its parts.
@@ -265,17 +305,6 @@ impl LeRobotReader {
     }
 }
 
-fn column<'b>(batch: &'b RecordBatch, name: &str) -> Result<&'b ArrayRef, String> {
-    let column = batch.column_by_name(name);
-    column.ok_or_else(|| format!("there is no column {name}"))
-}
-
-fn whole_numbers<'b>(batch: &'b RecordBatch, name: &str) -> Result<&'b [i64], String> {
-    let numbers = column(batch, name)?.as_primitive_opt::<Int64Type>();
-    let numbers = numbers.ok_or_else(|| format!("{name} has other than whole numbers"))?;
-    Ok(numbers.values())
-}
-
 fn vectors(batch: &RecordBatch, name: &str, names: &[String]) -> Result<FrameVectors, String> {
     let mut vectors = FrameVectors::new(names.to_vec());
     if names.is_empty() {
@@ -297,39 +326,6 @@ fn vectors(batch: &RecordBatch, name: &str, names: &[String]) -> Result<FrameVec
         vectors.values.extend(numbers.values().iter());
     }
     Ok(vectors)
-}
-
-/// The numbers in each row of a column, whatever lists they are in; none if there is no such column.
-fn rows_of<N: ArrowPrimitiveType>(
-    batch: &RecordBatch,
-    name: &str,
-) -> Result<Vec<Vec<N::Native>>, String> {
-    let Some(column) = batch.column_by_name(name) else {
-        return Ok(Vec::new());
-    };
-    let rows = (0..column.len()).map(|row| {
-        let mut values = column.slice(row, 1);
-        loop {
-            let inner = match (values.as_fixed_size_list_opt(), values.as_list_opt::<i32>()) {
-                (Some(list), _) => {
-                    let width = list.value_length() as usize;
-                    let first = list.value_offset_at(0);
-                    list.values().slice(first, list.len() * width)
-                }
-                (None, Some(list)) => {
-                    let offsets = list.value_offsets();
-                    let (first, last) = (offsets[0] as usize, offsets[list.len()] as usize);
-                    list.values().slice(first, last - first)
-                }
-                (None, None) => break,
-            };
-            values = inner;
-        }
-        let numbers = values.as_primitive_opt::<N>();
-        let numbers = numbers.ok_or_else(|| format!("{name} has other numbers"))?;
-        Ok(numbers.values().to_vec())
-    });
-    rows.collect()
 }
 
 /// The pictures of a column. Frames with the same picture share one.

@@ -1,11 +1,13 @@
 //! Datasets, read back: numbers and pictures are those that were written.
 
+use std::{fs, path::Path};
+
 use tabletop_export::{
-    DatasetFormat as _, ExportError, LeRobot, LeRobotReader, Robomimic, TrainingEpisode,
-    read_robomimic,
+    DatasetFormat as _, EpisodeSelection, ExportError, LeRobot, LeRobotReader, PictureSelection,
+    Robomimic, TrainingEpisode, read_robomimic,
 };
 
-use crate::demonstration::{episode, fresh};
+use crate::demonstration::{episode, fresh, recording};
 
 fn is_same_in_numbers(read: &TrainingEpisode, written: &TrainingEpisode) {
     assert_eq!(read.fps, written.fps);
@@ -54,6 +56,121 @@ fn a_lerobot_dataset_reads_back_equal() {
         })
         .unwrap();
     assert_eq!(count, 2);
+}
+
+/// The recording as an episode with a small video.
+fn with_video() -> TrainingEpisode {
+    let pictures = PictureSelection {
+        size: Some([48, 36]),
+        has_video: true,
+        has_depth: true,
+        has_ids: true,
+        ..PictureSelection::default()
+    };
+    let selection = EpisodeSelection {
+        pictures,
+        ..EpisodeSelection::default()
+    };
+    TrainingEpisode::read(recording(), &selection).unwrap()
+}
+
+fn write(folder: &Path, episodes: impl IntoIterator<Item = TrainingEpisode>) {
+    let mut dataset = LeRobot::open(folder.to_owned()).unwrap();
+    for episode in episodes {
+        dataset.write(LeRobot::prepare(episode).unwrap()).unwrap();
+    }
+    dataset.finish().unwrap();
+}
+
+fn episodes(folder: &Path) -> Vec<TrainingEpisode> {
+    let mut all = Vec::new();
+    let visited = LeRobotReader::open(folder).unwrap().visit(|read| {
+        all.push(read);
+        Ok::<_, ExportError>(())
+    });
+    visited.unwrap();
+    all
+}
+
+/// What is wrong with the videos of a dataset of such episodes.
+fn faults(folder: &Path, episodes: usize) -> Vec<String> {
+    let mut videos = LeRobotReader::open(folder).unwrap().videos().unwrap();
+    let length = with_video().len();
+    let mut faults: Vec<_> = (0..episodes)
+        .flat_map(|episode| videos.faults(episode, length))
+        .collect();
+    faults.extend(videos.strays());
+    faults.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn videos_are_copied_to_the_byte_with_the_statistics_of_their_pictures() {
+    let [first, again] = ["lerobot_video", "lerobot_video_copy"].map(fresh);
+    let written = with_video();
+    // Two exports: a video each.
+    write(&first, [written.clone(), written.clone()]);
+    write(&first, [written.clone()]);
+    let read = episodes(&first);
+    assert_eq!(read.len(), 3);
+    for read in &read {
+        let (read, written) = (&read.cameras[0], &written.cameras[0]);
+        assert!(read.images.is_empty());
+        assert_eq!(read.size(), written.size());
+        let packets = |camera: &tabletop_export::CameraTrack| {
+            let video = camera.video.as_ref().unwrap();
+            assert!(video.packets[0].is_key);
+            (video.track, video.packets.clone())
+        };
+        assert_eq!(packets(read), packets(written));
+        assert_eq!(read.depths, written.depths);
+        assert_eq!(read.ids, written.ids);
+    }
+    assert_eq!(faults(&first, 3), [""; 0]);
+    write(&again, read);
+    assert_eq!(faults(&again, 3), [""; 0]);
+    for file in ["meta/info.json", "meta/stats.json"] {
+        let [one, other] = [&first, &again].map(|folder| fs::read_to_string(folder.join(file)));
+        assert_eq!(one.unwrap(), other.unwrap(), "{file}");
+    }
+}
+
+#[test]
+fn faults_of_videos_are_located() {
+    let folder = fresh("lerobot_video_faults");
+    write(&folder, [with_video(), with_video()]);
+    let path = folder.join("videos/observation.images.head/chunk-000/file-000.mp4");
+    let other = fresh("lerobot_video_faults_other");
+    write(&other, [with_video()]);
+    let shorter = fs::read(other.join("videos/observation.images.head/chunk-000/file-000.mp4"));
+    fs::write(&path, shorter.unwrap()).unwrap();
+    let found = faults(&folder, 2);
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(
+        found[0].contains("file-000.mp4: episode 1 ends at"),
+        "{found:?}"
+    );
+    assert!(
+        found[1].contains("are not those of its episodes"),
+        "{found:?}"
+    );
+    fs::write(&path, "no video").unwrap();
+    let found = faults(&folder, 2);
+    assert!(
+        found[0].contains("it is no video as this program makes them"),
+        "{found:?}"
+    );
+    fs::remove_file(&path).unwrap();
+    assert_eq!(faults(&folder, 2).len(), 2);
+
+    let info = folder.join("meta/info.json");
+    let text = fs::read_to_string(&info).unwrap();
+    let text = text.replace(
+        "observation.images.head\"",
+        "observation.images.x/../../../head\"",
+    );
+    fs::write(&info, text).unwrap();
+    let error = LeRobotReader::open(&folder).unwrap_err().to_string();
+    assert!(error.contains("can have no folder of that name"), "{error}");
 }
 
 #[test]
