@@ -1,5 +1,6 @@
 //! The program in a window.
 
+mod background;
 mod display;
 mod files;
 mod frame_rate;

@@ -1,12 +1,8 @@
 //! Videos of recordings, made while the window goes on.
 
-use std::{
-    path::{Path, PathBuf},
-    sync::mpsc::{Receiver, TryRecvError, channel},
-    thread,
-};
+use std::path::{Path, PathBuf};
 
-use bevy::{platform::cell::SyncCell, prelude::*};
+use bevy::prelude::*;
 use tabletop_core::Timeline;
 use tabletop_film::{CameraPlace, Film, FilmCamera, FilmFormat, FilmPace};
 use tabletop_gui::{Notices, Tone};
@@ -15,6 +11,7 @@ use tabletop_storage::Storage;
 use tabletop_xml::AllowedFolders;
 
 use super::picture::view;
+use crate::window::background::BackgroundWork;
 
 /// The size of its pictures, in columns and rows.
 const SIZE: [u32; 2] = [960, 720];
@@ -23,7 +20,7 @@ const SMALL: [u32; 2] = [480, 360];
 
 /// The video that is being made.
 #[derive(Resource, Default)]
-pub(super) struct Filming(Option<(PathBuf, SyncCell<Receiver<Result<(), String>>>)>);
+pub(super) struct Filming(Option<(PathBuf, BackgroundWork<()>)>);
 
 /// Begins a video of the recording that the Timeline shows, seen from the user's camera.
 pub(super) fn begin(world: &mut World, path: PathBuf) {
@@ -61,16 +58,11 @@ pub(super) fn begin(world: &mut World, path: PathBuf) {
     };
     let folder = world.resource::<Timeline>().folder.clone();
     let allowed = world.resource::<AllowedFolders>().0.clone();
-    let (sender, result) = channel();
     let place = path.clone();
-    thread::spawn(move || {
-        let made = make(&film, format, &folder, &allowed, &place);
-        // Nobody listens if the window is closed.
-        let _unheard = sender.send(made);
-    });
+    let work = BackgroundWork::begin(move || make(&film, format, &folder, &allowed, &place));
     let text = format!("{} is being made", path.display());
     world.resource_mut::<Notices>().renew(Tone::Event, &text);
-    world.resource_mut::<Filming>().0 = Some((path, SyncCell::new(result)));
+    world.resource_mut::<Filming>().0 = Some((path, work));
 }
 
 fn make(
@@ -90,14 +82,10 @@ fn make(
 /// Says that a video is saved, or why not.
 pub(super) fn take_result(mut filming: ResMut<Filming>, mut notices: ResMut<Notices>) {
     let filming = filming.bypass_change_detection();
-    let Some((path, result)) = &mut filming.0 else {
+    let Some((path, work)) = &mut filming.0 else {
         return;
     };
-    let result = match result.get().try_recv() {
-        Err(TryRecvError::Empty) => return,
-        Err(TryRecvError::Disconnected) => Err("its thread has ended".to_owned()),
-        Ok(result) => result,
-    };
+    let Some(result) = work.result() else { return };
     let path = path.display();
     match result {
         Ok(()) => notices.renew(Tone::Event, &format!("{path} is saved")),

@@ -1,12 +1,8 @@
 //! The lesson of a recording.
 
-use std::{
-    path::{Path, PathBuf},
-    sync::mpsc::{Receiver, TryRecvError, channel},
-    thread,
-};
+use std::path::{Path, PathBuf};
 
-use bevy::{platform::cell::SyncCell, prelude::*};
+use bevy::prelude::*;
 use tabletop_core::{SceneSpec, ShownTask, Timeline, TimelineStage};
 use tabletop_recorder::RecordingReader;
 use tabletop_task::{Demonstration, Requirements, Role, Task};
@@ -14,14 +10,15 @@ use tabletop_task::{Demonstration, Requirements, Role, Task};
 use crate::{
     scene_at_beginning,
     shown_task::{shown_task, value},
+    window::background::BackgroundWork,
 };
 
 /// The task of the recording that was made or opened last, if it shows one.
 #[derive(Resource, Default)]
 pub(super) struct Understood {
     lesson: Option<Lesson>,
-    /// The recording that is being read, with the channel of its result.
-    reading: Option<(PathBuf, SyncCell<Receiver<Result<Lesson, String>>>)>,
+    /// The reading of a recording, while it goes on.
+    reading: Option<BackgroundWork<Lesson>>,
     /// The recording that was read last, and its stage then.
     last: (PathBuf, TimelineStage),
     has_changed: bool,
@@ -75,26 +72,14 @@ pub(super) fn read_recording(timeline: Res<Timeline>, mut understood: ResMut<Und
         return;
     }
     let folder = timeline.folder.clone();
-    let (sender, receiver) = channel();
-    let path = folder.clone();
-    let read = move || drop(sender.send(Lesson::read(&path)));
-    match thread::Builder::new().name("task".into()).spawn(read) {
-        Ok(_) => understood.reading = Some((folder, SyncCell::new(receiver))),
-        Err(error) => understood.fault = Some(error.to_string()),
-    }
+    understood.reading = Some(BackgroundWork::begin(move || Lesson::read(&folder)));
 }
 
 /// Takes over the result of reading. A recording in which no hand acts does not replace the earlier task.
 pub(super) fn take_read_task(mut understood: ResMut<Understood>) {
-    let Some((folder, receiver)) = &mut understood.bypass_change_detection().reading else {
+    let reading = understood.bypass_change_detection().reading.as_mut();
+    let Some(read) = reading.and_then(BackgroundWork::result) else {
         return;
-    };
-    let read = match receiver.get().try_recv() {
-        Ok(read) => read,
-        Err(TryRecvError::Empty) => return,
-        Err(TryRecvError::Disconnected) => {
-            Err(format!("{}: it could not be read", folder.display()))
-        }
     };
     understood.reading = None;
     match read {
