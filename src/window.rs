@@ -2,6 +2,7 @@
 
 mod background;
 mod display;
+mod editing;
 mod files;
 mod frame_rate;
 mod idle;
@@ -146,6 +147,7 @@ fn build(options: WindowOptions) -> App {
             task: options.show.task(),
         },
         display::plugin,
+        editing::plugin,
         files::plugin,
         frame_rate::plugin,
         idle::plugin,

@@ -125,6 +125,14 @@ impl Timeline {
         let next = self.segments.get(segment + 1);
         next.map_or(self.end, |next| SimTick(next.start.0.saturating_sub(1)))
     }
+
+    /// Number of ticks of a segment; none if the next one begins in the same tick, or if there is no such segment.
+    pub fn ticks_of(&self, segment: usize) -> u64 {
+        let start = self.segments.get(segment).map(|segment| segment.start.0);
+        let next = self.segments.get(segment + 1).map(|next| next.start.0);
+        let end = next.unwrap_or(self.end.0 + 1);
+        start.map_or(0, |start| end.saturating_sub(start))
+    }
 }
 
 impl Act {
@@ -252,6 +260,8 @@ mod tests {
         );
         let ends = [0, 1, 2, 3].map(|segment| timeline.end_of(segment).0);
         assert_eq!(ends, [19, 19, 49, 100]);
+        let ticks = [0, 1, 2, 3, 4].map(|segment| timeline.ticks_of(segment));
+        assert_eq!(ticks, [10, 0, 30, 51, 0]);
     }
 
     #[test]

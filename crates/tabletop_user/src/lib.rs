@@ -1,9 +1,10 @@
 //! The user before the window: keys and their actions, the camera he looks through, the plane he drags in, the pace of time, and the
-//! imitation that he watches.
+//! imitation and the edits of a recording that he watches.
 //!
 //! View and panels share it and do not know each other. A world without a window has none of it.
 
 mod drag_plane;
+mod editing;
 mod ghost;
 mod imitating;
 mod keymap;
@@ -11,6 +12,7 @@ mod navigation;
 mod pace;
 
 pub use drag_plane::DragPlane;
+pub use editing::{EditOrder, Editing, TimelineEdit};
 pub use ghost::{Ghost, Ghosts};
 pub use imitating::{Imitating, TaskOrder};
 pub use keymap::{
@@ -38,8 +40,10 @@ impl UserPlugin {
 impl Plugin for UserPlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<CameraMotion>()
+            .add_message::<EditOrder>()
             .add_message::<TaskOrder>()
             .init_resource::<DragPlane>()
+            .init_resource::<Editing>()
             .init_resource::<Ghosts>()
             .init_resource::<Imitating>()
             .init_resource::<KeyLetters>()

@@ -1,8 +1,8 @@
-//! Keys that undo and redo (report section 4.1).
+//! Keys that undo and redo: segments of a recording that is made (report section 4.1), edits of an open one.
 
 use bevy::prelude::*;
 use tabletop_core::{Actor, CommandWriter, History, HistoryCommand};
-use tabletop_user::{Action, KeySystems, was_struck};
+use tabletop_user::{Action, EditOrder, Editing, KeySystems, was_struck};
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
@@ -15,15 +15,29 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn undo(history: Res<History>, mut commands: CommandWriter) {
+fn undo(
+    history: Res<History>,
+    editing: Res<Editing>,
+    mut commands: CommandWriter,
+    mut edits: MessageWriter<EditOrder>,
+) {
     if history.undoable > 0 {
         commands.write(Actor::Key, HistoryCommand::Undo);
+    } else if editing.undoable > 0 {
+        edits.write(EditOrder::Undo);
     }
 }
 
-fn redo(history: Res<History>, mut commands: CommandWriter) {
+fn redo(
+    history: Res<History>,
+    editing: Res<Editing>,
+    mut commands: CommandWriter,
+    mut edits: MessageWriter<EditOrder>,
+) {
     if history.redoable > 0 {
         commands.write(Actor::Key, HistoryCommand::Redo);
+    } else if editing.redoable > 0 {
+        edits.write(EditOrder::Redo);
     }
 }
 
@@ -62,6 +76,25 @@ mod tests {
             keys.iter().for_each(|&key| test.keys().press(key));
             assert_eq!(test.hold_still(), [command]);
             assert_eq!(test.hold_still(), []);
+        }
+    }
+
+    #[test]
+    fn keys_undo_and_redo_edits_of_an_open_recording() {
+        for (keys, order) in [
+            (&[ControlLeft, KeyZ][..], EditOrder::Undo),
+            (&[ControlLeft, KeyY], EditOrder::Redo),
+        ] {
+            let mut test = TestWorld::new(plugin);
+            test.app.insert_resource(Editing {
+                undoable: 1,
+                redoable: 1,
+                ..default()
+            });
+            keys.iter().for_each(|&key| test.keys().press(key));
+            assert_eq!(test.hold_still(), []);
+            let mut orders = test.app.world_mut().resource_mut::<Messages<EditOrder>>();
+            assert_eq!(orders.drain().collect::<Vec<_>>(), [order]);
         }
     }
 }

@@ -1,14 +1,18 @@
 //! The Timeline: the recording that is made or open, with its segments, its pictures and a playhead.
 
 mod axis;
+mod edits;
 mod film;
 mod lesson;
 mod model;
 mod orders;
 mod pictures;
+mod segment_ends;
+mod selected_segments;
 mod sentences;
 mod track;
 mod transport;
+mod view;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
@@ -16,12 +20,12 @@ use bevy_egui::{
     egui::{self, Ui},
 };
 use tabletop_core::{History, Paused, Playback, ShownTask, SimTick, Timeline, TimelineStage};
-use tabletop_user::{Imitating, Keymap};
+use tabletop_user::{EditOrder, Editing, Imitating, Keymap};
 
 use self::{
     axis::TimeAxis,
     model::{Model, Moment, Request},
-    pictures::Pictures,
+    view::View,
 };
 use crate::panels::{Panel, Panels};
 
@@ -30,24 +34,15 @@ const ABSENT: &str = "There is no recording. Start one in Demonstration Tools, o
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<View>()
-        .add_plugins(orders::plugin)
+        .add_plugins((edits::plugin, orders::plugin))
         .add_systems(Update, open_with_recording)
         .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
-/// The state of the panel.
-#[derive(Resource, Default)]
-pub(crate) struct View {
-    /// The moment that the user looks at, though the world is not there.
-    looked_at: Option<SimTick>,
-    /// The moment under the mouse while it drags.
-    dragged_to: Option<SimTick>,
-    pictures: Pictures,
-}
-
 /// Shows the panel's contents, and returns the user's requests.
-pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
+fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
     view.pictures.begin_frame(model.timeline);
+    view.selection.begin_frame(model.timeline);
     let mut requests = transport::show(ui, model);
     if model.timeline.stage == TimelineStage::Absent {
         view.looked_at = None;
@@ -60,7 +55,9 @@ pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> 
         egui::Sense::hover(),
     );
     let axis = TimeAxis::new(model.timeline, rect.x_range());
-    let mut moments = track::show(ui, model, axis, rect);
+    let mut moments = track::show(ui, model, axis, rect, &mut view.selection);
+    let retimed = segment_ends::show(ui, model, axis, track::lane(rect), &view.selection);
+    requests.extend(retimed.map(|edit| Request::Edit(EditOrder::Edit(edit))));
     moments.extend(sentences::show(ui, model, axis));
     moments.extend(film::show(ui, model, axis, &mut view.pictures));
     let mut dragged_to = None;
@@ -79,6 +76,8 @@ pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> 
         view.looked_at = None;
     }
     requests.extend(show_segment(ui, model, view));
+    let edits = edits::show(ui, model, &view.selection);
+    requests.extend(edits.into_iter().map(Request::Edit));
     requests.extend(lesson::show(ui, model));
     requests
 }
@@ -170,6 +169,7 @@ struct Sources<'w> {
     keymap: Res<'w, Keymap>,
     task: Res<'w, ShownTask>,
     imitating: Res<'w, Imitating>,
+    editing: Res<'w, Editing>,
 }
 
 fn show_panel(
@@ -192,6 +192,7 @@ fn show_panel(
         keymap: &source.keymap,
         task: &source.task,
         imitating: &source.imitating,
+        editing: &source.editing,
     };
     let mut requests = Vec::new();
     Panel::Timeline.show(context, &mut panels, |ui| {

@@ -53,10 +53,12 @@ pub enum Action {
     PlaneClockwise,
     /// Show the perpendicular plane while held down.
     PlanePerpendicular,
-    /// Discard the present segment of the recording (report section 4.1).
+    /// Discard the present segment of the recording (report section 4.1), or take back the last edit of the open one.
     Undo,
-    /// Bring back the segment that was undone last.
+    /// Bring back the segment or edit that was undone last.
     Redo,
+    /// Delete the selected segments of the open recording.
+    DeleteSegments,
     /// Trigger the control under the cursor.
     Trigger,
     /// Point to the part under the cursor.

@@ -43,6 +43,11 @@ impl TimeAxis {
         SimTick(self.start + (part * self.ticks as f32).round() as u64)
     }
 
+    /// Number of ticks in a width; none in one to the left.
+    pub fn ticks_in(&self, width: f32) -> u64 {
+        (width / self.x.span() * self.ticks as f32).round() as u64
+    }
+
     /// The marks of the ruler, each with its text.
     pub fn marks(&self) -> Vec<(f32, String)> {
         let per_second = f64::from(TICKS_PER_SECOND);
@@ -97,6 +102,10 @@ mod tests {
         }
         assert_eq!(axis.tick_at(-50.0), SimTick(100));
         assert_eq!(axis.tick_at(5000.0), SimTick(700));
+        assert_eq!(
+            [300.0, 900.0, -1.0].map(|x| axis.ticks_in(x)),
+            [300, 900, 0]
+        );
         assert_eq!(axis.x_of(SimTick(3)), 10.0);
         assert_eq!(axis.x_of(SimTick(9999)), 610.0);
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use tabletop_core::{
     History, Playback, ShownStep, ShownTask, SimTick, Timeline, TimelineSegment, TimelineStage,
 };
-use tabletop_user::{Imitating, Keymap, Pace, TaskOrder};
+use tabletop_user::{EditOrder, Editing, Imitating, Keymap, Pace, TaskOrder};
 
 use super::axis::seconds;
 
@@ -23,6 +23,7 @@ pub(crate) struct Model<'a> {
     /// The task of the recording.
     pub task: &'a ShownTask,
     pub imitating: &'a Imitating,
+    pub editing: &'a Editing,
 }
 
 /// A wish of the user.
@@ -45,6 +46,7 @@ pub(crate) enum Request {
     SaveVideo,
     Close,
     Task(TaskOrder),
+    Edit(EditOrder),
 }
 
 impl Model<'_> {

@@ -5,7 +5,9 @@ use tabletop_core::{
     Actor, ClockCommand, CommandWriter, HistoryCommand, OpenRecording, OrderSystems, PlaybackOrder,
     Recording, RestApp as _, RestingSystems,
 };
-use tabletop_user::{Action, Imitating, KeySystems, Pace, SingleStep, TaskOrder, was_struck};
+use tabletop_user::{
+    Action, EditOrder, Imitating, KeySystems, Pace, SingleStep, TaskOrder, was_struck,
+};
 
 use super::model::Request;
 use crate::files::FileRequest;
@@ -54,6 +56,7 @@ pub(super) struct Orders<'w> {
     open: MessageWriter<'w, OpenRecording>,
     files: MessageWriter<'w, FileRequest>,
     task: MessageWriter<'w, TaskOrder>,
+    edits: MessageWriter<'w, EditOrder>,
     pace: ResMut<'w, Pace>,
     undos: ResMut<'w, PendingUndos>,
 }
@@ -101,6 +104,9 @@ impl Orders<'_> {
             }
             Request::Task(order) => {
                 self.task.write(order);
+            }
+            Request::Edit(order) => {
+                self.edits.write(order);
             }
         }
     }

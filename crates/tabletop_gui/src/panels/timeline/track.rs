@@ -1,8 +1,8 @@
 //! The ruler, the segments on it, the grips, and the playhead.
 
 use bevy_egui::egui::{
-    Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,
-    WidgetType, pos2, vec2,
+    Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui,
+    WidgetInfo, WidgetType, pos2, vec2,
 };
 use tabletop_core::{Act, SimTick, TimelineSegment, Verb};
 use tabletop_geometry::Rgb;
@@ -10,7 +10,9 @@ use tabletop_geometry::Rgb;
 use super::{
     axis::TimeAxis,
     model::{Model, Moment},
+    selected_segments::SelectedSegments,
 };
+use crate::widgets::style::ACCENT;
 
 /// Heights in points.
 const RULER: f32 = 16.0;
@@ -35,15 +37,25 @@ pub(super) fn color(color: Rgb) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// Shows the track, and returns the moments that the user points out.
-pub(super) fn show(ui: &mut Ui, model: &Model, axis: TimeAxis, rect: Rect) -> Vec<Moment> {
+/// The part of the track in which its segments are.
+pub(super) fn lane(track: Rect) -> Rect {
+    let top = track.min.y + RULER;
+    Rect::from_x_y_ranges(track.x_range(), top..=top + SEGMENTS)
+}
+
+/// Shows the track, and returns the moments that the user points out. A click on a segment of an open recording selects it.
+pub(super) fn show(
+    ui: &mut Ui,
+    model: &Model,
+    axis: TimeAxis,
+    rect: Rect,
+    selection: &mut SelectedSegments,
+) -> Vec<Moment> {
     let ruler = Rect::from_min_size(rect.min, vec2(rect.width(), RULER));
-    let lane = ruler
-        .translate(vec2(0.0, RULER))
-        .with_max_y(ruler.max.y + SEGMENTS);
+    let lane = lane(rect);
     let mut moments = show_ruler(ui, model, axis, ruler);
     for number in 0..model.timeline.segments.len() {
-        moments.extend(show_segment(ui, model, axis, lane, number));
+        moments.extend(show_segment(ui, model, axis, lane, number, selection));
     }
     show_grips(ui, model, axis, lane.max.y);
     paint_playhead(ui, model, axis, rect);
@@ -76,6 +88,7 @@ fn show_segment(
     axis: TimeAxis,
     lane: Rect,
     number: usize,
+    selection: &mut SelectedSegments,
 ) -> Vec<Moment> {
     let Some(segment) = model.segment(number) else {
         return Vec::new();
@@ -91,6 +104,14 @@ fn show_segment(
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &sentence));
     let is_present = model.timeline.segment_at(model.playhead()) == Some(number);
     paint_segment(ui, segment, &response, rect, is_present);
+    if response.clicked() && model.is_open() {
+        selection.choose(model.timeline, number);
+    }
+    if selection.contains(number) {
+        let outline = Stroke::new(1.5, ACCENT);
+        ui.painter()
+            .rect_stroke(rect, 3.0, outline, StrokeKind::Inside);
+    }
     let moments = moment(&response, axis, segment.start);
     if let Some(at) = response.hover_pos() {
         response.on_hover_text_at_pointer(caption_at(model, axis.tick_at(at.x)));
