@@ -24,6 +24,8 @@
 //! | [`replay`] | recordings, simulated again |
 //! | [`export`] | recordings as datasets of other tools |
 //! | [`dataset`] | folders of recordings and datasets: imported, described, checked, edited |
+//! | [`environment`] | worlds and environments in the hands of a program, thousands of them |
+//! | [`cli`] | the command line |
 //! | [`imitation`], [`multiplication`] | whole episodes in worlds of their own |
 //! | [`planner`] | the robot's plan for such a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
@@ -53,8 +55,10 @@ pub use tabletop_core as core;
 pub use tabletop_dataset as dataset;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_drive as drive;
+pub use tabletop_environment as environment;
 pub use tabletop_episodes::{
-    imitation, multiplication, robot_body, run_episodes, scene_at_beginning, shown_task, soak,
+    Collection, CollectionError, imitation, multiplication, robot_body, run_episodes,
+    scene_at_beginning, shown_task, soak,
 };
 pub use tabletop_export as export;
 pub use tabletop_film as film;
@@ -77,7 +81,7 @@ pub use tabletop_script as script;
 pub use tabletop_script::engine;
 pub use tabletop_sim::{
     RecordedSettingsPlugin, ResetPlugin, ShippedFilesPlugin, TabletopSimPlugins, final_state,
-    headless_app, headless_app_with, reset, scene_dump, shipped, task_files,
+    headless_app, headless_app_with, reset, robots, scene_dump, shipped, task_files,
 };
 pub use tabletop_storage as storage;
 pub use tabletop_task as task;
@@ -87,6 +91,7 @@ pub use tabletop_user as user;
 pub use tabletop_view as view;
 pub use tabletop_xml as xml;
 
+pub mod cli;
 #[cfg(test)]
 #[cfg(feature = "window")]
 mod test_folder;

@@ -1,13 +1,13 @@
 //! The end of a command's recording.
 
+use crate::recorder::{RecordingReport, finish_recording};
 use bevy::prelude::*;
-use tabletop::recorder::{RecordingReport, finish_recording};
 
 use super::{Failure, terminal::say};
 
 /// Finishes a recording that still runs. The run has failed if a recording has.
 pub(super) fn finish(app: &mut App) -> Result<RecordingReport, Failure> {
-    finish_recording(app).map_err(Failure::run)
+    finish_recording(app.world_mut()).map_err(Failure::run)
 }
 
 /// Says where the earlier recordings are that were in the way.

@@ -1,20 +1,21 @@
 //! Options for the robot and its script.
 
 use std::{
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
     time::Duration,
 };
 
-use bevy::prelude::*;
-use clap::{Args, builder::TypedValueParser as _};
-use tabletop::{
-    core::{LayoutFile, Reach, RobotCommand, RobotMode, WriteCommand as _},
-    robot::{Description, DescriptionSource, RobotPlugin},
+use crate::{
+    core::{RobotCommand, RobotMode, WriteCommand as _},
+    robot::{Description, RobotPlugin},
+    robots::read_robot,
     script::{
         ENGINE_VARIABLE, EngineChoice, EngineKind, EngineLocator, FieldPolicy, ScriptSettings,
     },
-    shipped::{self, shipped_files, true_path},
+    shipped::shipped_files,
 };
+use bevy::prelude::*;
+use clap::{Args, builder::TypedValueParser as _};
 #[cfg(feature = "window")]
 use tabletop_user::Keymap;
 
@@ -68,6 +69,11 @@ impl RobotOptions {
         self.choice.plugin()
     }
 
+    /// All that was said of the robot, but whether it is shown.
+    pub fn name(&self) -> (Option<&Path>, bool) {
+        (self.choice.robot.as_deref(), self.choice.dynamic)
+    }
+
     /// Puts the robot at the table, if it is to be there from the start.
     pub fn show(&self, app: &mut App) {
         if self.show_robot {
@@ -78,54 +84,12 @@ impl RobotOptions {
 
 /// Reads a `robot.ron` and the URDF beside it, or a URDF of a robot with Baxter's limbs and joints.
 pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
-    let at = |path: &Path, error: &dyn std::fmt::Display| {
-        Failure::input(format!("{}: {error}", path.display()))
-    };
-    let read = |path: &Path| shipped::read_text(path).map_err(|error| at(path, &error));
-    let text = read(path)?;
-    let source = match path.extension().is_some_and(|extension| extension == "ron") {
-        true => {
-            let file = LayoutFile::read(&text).map_err(|error| at(path, &error))?;
-            let urdf = path.with_file_name(&file.urdf);
-            if !is_beside(Path::new(&file.urdf)) || is_linked_away(path, &urdf) {
-                let problem = format!(
-                    "its URDF {} leads out of its folder; expected a file there or below",
-                    file.urdf
-                );
-                return Err(at(path, &problem));
-            }
-            DescriptionSource {
-                urdf: read(&urdf)?,
-                path: true_path(&urdf),
-                layout: Some(text),
-                reach: None,
-            }
-        }
-        false => DescriptionSource {
-            path: true_path(path),
-            urdf: text,
-            layout: None,
-            reach: None,
-        },
-    };
-    let description = Description::read(source).map_err(|error| at(path, &error))?;
+    let description = read_robot(path).map_err(Failure::input)?;
     #[cfg(feature = "window")]
     if let Some(fault) = Keymap::of(&description.layout).1.first() {
-        return Err(at(path, fault));
+        return Err(Failure::input(format!("{}: {fault}", path.display())));
     }
     Ok(description)
-}
-
-/// True if a path stays in the folder that it begins in.
-fn is_beside(path: &Path) -> bool {
-    let mut components = path.components();
-    components.all(|component| matches!(component, Component::Normal(_) | Component::CurDir))
-}
-
-/// True if links lead from a file beside a `robot.ron` to another folder. A missing file is left to its reader.
-fn is_linked_away(robot: &Path, file: &Path) -> bool {
-    let is_on_disk = shipped_files().find(file).is_none() && file.exists();
-    is_on_disk && !Reach::of(robot.parent()).contains(file)
 }
 
 /// The language of scripts that a user's own driver runs.

@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 35] = [
+const RULES: [Rule; 37] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -203,6 +203,24 @@ const RULES: [Rule; 35] = [
         ],
     ),
     Rule::new(
+        "tabletop_environment",
+        &[
+            "tabletop_assembly",
+            "tabletop_core",
+            "tabletop_episodes",
+            "tabletop_film",
+            "tabletop_geometry",
+            "tabletop_history",
+            "tabletop_planner",
+            "tabletop_recorder",
+            "tabletop_replay",
+            "tabletop_robot",
+            "tabletop_scenario",
+            "tabletop_sim",
+        ],
+    ),
+    Rule::new("tabletop_python", &["tabletop"]),
+    Rule::new(
         "tabletop_export",
         &[
             "tabletop_core",
@@ -272,6 +290,7 @@ const RULES: [Rule; 35] = [
             "tabletop_scene",
             "tabletop_drive",
             "tabletop_demonstrator",
+            "tabletop_environment",
             "tabletop_export",
             "tabletop_episodes",
             "tabletop_film",

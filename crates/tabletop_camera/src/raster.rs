@@ -44,9 +44,10 @@ const ROWS_IN_TASK: usize = 2 * ROWS;
 /// the same size and a scene of the same length; it also keeps its results for the table and for figures that stay. Rows in which
 /// nothing has changed since the last picture are not drawn again.
 ///
-/// In an app, Bevy's compute threads help.
+/// In an app, Bevy's compute threads help, unless it [draws alone](Self::alone).
 #[derive(Clone, Debug, Default)]
 pub struct Rasterizer {
+    is_alone: bool,
     polyhedra: Polyhedra,
     visible: VisibleSurfaces,
     spheres: TransparentSpheres,
@@ -56,6 +57,14 @@ pub struct Rasterizer {
 }
 
 impl Rasterizer {
+    /// A rasterizer that draws on the thread of its caller alone: for worlds that keep all cores busy among themselves.
+    pub fn alone() -> Self {
+        Self {
+            is_alone: true,
+            ..Self::default()
+        }
+    }
+
     /// Draws the view of the camera. Of surfaces that are equally near, the first kind wins: cuboids come before
     /// cylinders and balls, these before figures, and polyhedra are last; within a kind, the first in the scene wins.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, picture: &mut Picture) {
@@ -63,7 +72,10 @@ impl Rasterizer {
         let lighting = Lighting::from(camera.light);
         if self.visible.lighting != lighting {
             // Nothing of the last picture looks the same.
-            *self = Self::default();
+            *self = Self {
+                is_alone: self.is_alone,
+                ..Self::default()
+            };
             self.visible.lighting = lighting;
         }
         self.polyhedra.find(&scene.solids);
@@ -98,7 +110,7 @@ impl Rasterizer {
             }
         };
         let mut kept: Vec<_> = self.kept.bands().collect();
-        match ComputeTaskPool::try_get() {
+        match ComputeTaskPool::try_get().filter(|_| !self.is_alone) {
             Some(threads) => {
                 let first_rows = (0..camera.height).step_by(ROWS_IN_TASK);
                 self.bands.resize_with(first_rows.len(), Band::default);

@@ -124,21 +124,25 @@ impl StepApp for App {
     }
 
     fn step(&mut self, ticks: u64) -> &mut Self {
-        let world = self.world_mut();
-        let mut left = ticks;
-        while left > 0 {
-            let resting = rest::ticks_of_rest(world).min(left);
-            if resting > 0 && rest::holds_for_all_systems(world) {
-                rest::pass_over(world, resting);
-                (0..resting.min(2)).for_each(|_| end_tick(world));
-                left -= resting;
-            } else {
-                world.run_schedule(FixedMain);
-                end_tick(world);
-                left -= 1;
-            }
-        }
+        step_world(self.world_mut(), ticks);
         self
+    }
+}
+
+/// [`StepApp::step`] for the world of a started app, which unlike the app can be sent to another thread.
+pub fn step_world(world: &mut World, ticks: u64) {
+    let mut left = ticks;
+    while left > 0 {
+        let resting = rest::ticks_of_rest(world).min(left);
+        if resting > 0 && rest::holds_for_all_systems(world) {
+            rest::pass_over(world, resting);
+            (0..resting.min(2)).for_each(|_| end_tick(world));
+            left -= resting;
+        } else {
+            world.run_schedule(FixedMain);
+            end_tick(world);
+            left -= 1;
+        }
     }
 }
 

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use bevy::prelude::*;
+use serde::Serialize;
 
 use crate::{Bond, CommandId, Hand, LimbName, Obstacle, Operator};
 
 /// An event of this tick. They are nested by the part that reports them, as commands are by the part that carries them out.
-#[derive(Message, Clone, Debug, PartialEq)]
+#[derive(Message, Clone, Debug, PartialEq, Serialize)]
 pub enum SimFact {
     /// An event of the scene.
     Scene(SceneFact),
@@ -31,7 +32,7 @@ pub enum SimFact {
 }
 
 /// An event of the scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum SceneFact {
     /// A task file was read. Its scene is on the table in this tick, but for the faulty elements.
     TaskLoaded {
@@ -49,6 +50,7 @@ pub enum SceneFact {
         /// Its id.
         id: String,
         /// Its entity.
+        #[serde(skip)]
         object: Entity,
     },
     /// An object has gone.
@@ -61,7 +63,7 @@ pub enum SceneFact {
 }
 
 /// An event of the history of a recording.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum HistoryFact {
     /// A hand is about to act: a new segment of the recording begins.
     SegmentBegun {
@@ -81,7 +83,7 @@ pub enum HistoryFact {
 }
 
 /// An event of a hand.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum HandFact {
     /// A hand has taken an object.
     Grasped {
@@ -113,7 +115,7 @@ pub enum HandFact {
 }
 
 /// An event of a control, a bond or scissors.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum MechanismFact {
     /// A control was operated.
     Triggered {
@@ -176,7 +178,7 @@ pub enum MechanismFact {
 }
 
 /// An event of a recording.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum RecordingFact {
     /// A recording has begun.
     Started {
@@ -206,7 +208,7 @@ pub enum RecordingFact {
 }
 
 /// An event of the robot.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum RobotFact {
     /// The robot was put at the table, or taken away.
     Shown {

@@ -67,7 +67,7 @@ mod timeline;
 
 pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
 pub use bond::{Bond, BondEnd, BondPoint, Bonds, GuestPoint, HostPoint, TightnessStep};
-pub use clock::StepApp;
+pub use clock::{StepApp, step_world};
 pub use command::{
     Actor, Cause, ClockCommand, CommandId, CommandKind, CommandWriter, HandCommand, HistoryCommand,
     IssuedCommand, MechanismCommand, RecordingCommand, RobotCommand, SceneCommand, SimCommand,

@@ -2,5 +2,4 @@
 
 pub(crate) mod joint_targets;
 pub(crate) mod obey;
-pub(crate) mod reach;
 pub(crate) mod visibility;

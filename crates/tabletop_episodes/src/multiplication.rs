@@ -3,7 +3,6 @@
 //!
 //! The seed and the number of a demonstration alone decide it, so it does not matter which others were made, or where.
 
-mod collection;
 mod fingerprint;
 mod lasting;
 mod late;
@@ -12,13 +11,12 @@ mod performance;
 mod variation;
 mod way;
 
-pub use collection::{Collection, CollectionError};
 pub use variation::{Variation, with_colors_exchanged};
 
 use std::{fmt, io, path::Path};
 
 use bevy::prelude::*;
-use serde_json::json;
+use serde_json::{Value, json};
 use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_controller::Sight;
 use tabletop_core::{
@@ -28,7 +26,7 @@ use tabletop_core::{
 use tabletop_kinematics::ModelError;
 use tabletop_planner::{Before, PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{
-    HandPictures, RecorderError, RecorderPlugin, RecordingReader, finish_recording,
+    HandPictures, RecorderError, RecorderPlugin, RecordingReader, SessionHeader, finish_recording,
 };
 use tabletop_robot::{DescriptionSource, RobotPlugin};
 use tabletop_storage::{Storage, Symlinks, read_regular_file};
@@ -249,6 +247,16 @@ impl Multiplication {
         Ok(made)
     }
 
+    /// True if a recording says that it is the demonstration of this number.
+    pub fn has_made(&self, number: u64, header: &SessionHeader) -> bool {
+        let multiplied = header.settings.get(MULTIPLIED);
+        let is = |name: &str, value: u64| {
+            let found = multiplied.and_then(|multiplied| multiplied.get(name));
+            found.and_then(Value::as_u64) == Some(value)
+        };
+        is("number", number) && is("seed", self.seed)
+    }
+
     fn varying(&self) -> Varying<'_> {
         Varying {
             task: &self.task,
@@ -310,7 +318,7 @@ impl Multiplication {
         app.step(1);
         let before = Before::anything(&Sight::of(app.world_mut()));
         let shown = self.act(&mut app, &binding, seed);
-        finish_recording(&mut app).map_err(MultiplyError::Record)?;
+        finish_recording(app.world_mut()).map_err(MultiplyError::Record)?;
         Ok(shown.and_then(|()| lasts(&mut app, &self.task, &binding, &before)))
     }
 

@@ -66,7 +66,7 @@ impl Round {
             look(&mut app).map_err(|fault| format!("tick {tick}: {fault}"))?;
         }
         give(&mut app, ClockCommand::SetPaused(false));
-        finish_recording(&mut app)?;
+        finish_recording(app.world_mut())?;
         drop(app);
         self.replay(&recorded)
     }

@@ -10,9 +10,10 @@ use crate::{
     canvas::{Canvas, wrapped},
     contact_sheet::{Still, contact_sheet},
     error::FilmError,
-    footage::{Footage, Shot},
+    footage::Footage,
     mp4::Mp4Writer,
     pace::FilmPace,
+    studio::Shot,
     video::{VideoEncoder, VideoTrack},
 };
 

@@ -23,14 +23,16 @@ mod footage;
 mod mp4;
 mod mp4_reader;
 mod pace;
+mod studio;
 mod video;
 
 pub use camera::{CameraPlace, FilmCamera};
 pub use canvas::Canvas;
 pub use error::FilmError;
 pub use film::{Film, FilmFormat};
-pub use footage::{Footage, SeenThing, Shot};
+pub use footage::Footage;
 pub use mp4::Mp4Writer;
 pub use mp4_reader::Mp4Reader;
 pub use pace::FilmPace;
+pub use studio::{SeenThing, Shot, Studio};
 pub use video::{VideoEncoder, VideoPacket, VideoTrack};

@@ -56,7 +56,7 @@ pub use reading::{
 };
 pub use recording::{
     finish::{finish_recording, recording_report},
-    recorder::set_earlier_commands,
+    recorder::{GivenCommands, record_into, set_earlier_commands},
     recorder_plugin::RecorderPlugin,
     report::{MovedAside, RecordingReport},
     unrecorded::UnrecordedPlugin,

@@ -11,6 +11,7 @@ mod description;
 mod hand_cameras;
 pub mod look;
 mod plugin;
+mod reach;
 mod source;
 
 pub use articulation::{
@@ -23,6 +24,7 @@ pub use articulation::{
 pub use description::{Description, DescriptionError};
 pub use hand_cameras::HandCameraCarrier;
 pub use plugin::RobotPlugin;
+pub use reach::{end_effector_at, reach};
 pub use source::DescriptionSource;
 
 /// The names that most users of this crate need.

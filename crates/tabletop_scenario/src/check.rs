@@ -134,6 +134,34 @@ impl Check {
         }
     }
 
+    /// Id of the object that has to be moved for it to hold, if it is about one.
+    pub fn moved(&self) -> Option<&str> {
+        match self {
+            Self::Location { object, .. }
+            | Self::Rotation { object, .. }
+            | Self::OnTopOf { object, .. }
+            | Self::OnTable { object, .. }
+            | Self::Inside { object, .. }
+            | Self::HeldBy { object, .. }
+            | Self::Robot(RobotCheck::Holds { object, .. }) => Some(object),
+            Self::Free(object)
+            | Self::State {
+                control: object, ..
+            }
+            | Self::Fastened { guest: object, .. } => Some(object),
+            Self::AtRest(_)
+            | Self::AllAtRest
+            | Self::Exists(_)
+            | Self::Gone(_)
+            | Self::Robot(
+                RobotCheck::Joint { .. }
+                | RobotCheck::EndEffector { .. }
+                | RobotCheck::HoldsNothing(_)
+                | RobotCheck::BlockedBy { .. },
+            ) => None,
+        }
+    }
+
     /// Whether it is about where an object has come to rest, which must last.
     pub(crate) const fn is_of_placement(&self) -> bool {
         match self {

@@ -25,8 +25,11 @@
 
 mod act;
 mod check;
+mod due;
 mod error;
 mod fault;
+mod judge;
+mod performer;
 mod place;
 mod program;
 mod reach;
@@ -35,6 +38,7 @@ mod robot;
 mod run;
 mod scenario;
 mod seen;
+mod sight;
 mod source;
 mod step;
 #[cfg(test)]
@@ -42,6 +46,8 @@ mod test_stage;
 
 pub use check::Check;
 pub use error::ScenarioError;
+pub use judge::{Gap, Judge, Verdict};
+pub use performer::Performer;
 pub use place::RandomPlace;
 pub use program::Program;
 pub use robot::{RobotCheck, RobotStep};
@@ -57,13 +63,7 @@ pub mod prelude {
 }
 
 use bevy::prelude::*;
-use tabletop_core::{
-    Actor, Bonds, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused,
-    RecordingFact, RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
-};
-use tabletop_geometry::Pose;
-
-use crate::seen::{ScenarioObject, Seen};
+use tabletop_core::{OrderSystems, RestApp as _, RestingSystems};
 
 /// Runs the [`ScenarioRun`] in the world, if there is one. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
@@ -75,7 +75,7 @@ impl Plugin for ScenarioPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(
             FixedUpdate,
-            take_due_steps
+            due::take_due_steps
                 .in_set(OrderSystems::Scenario)
                 .in_set(RestingSystems)
                 .run_if(resource_exists::<ScenarioRun>),
@@ -92,60 +92,11 @@ fn pass_over(world: &mut World, ticks: u64) -> Result {
     Ok(())
 }
 
-fn take_due_steps(
-    mut run: ResMut<ScenarioRun>,
-    mut facts: MessageReader<SimFact>,
-    mut commands: CommandWriter,
-    mut issued: Local<Option<CommandId>>,
-    index: Res<ObjectIndex>,
-    objects: Query<(&ObjectSpec, &Transform)>,
-    tables: Query<&Table>,
-    hands: Res<Hands>,
-    paused: Res<Paused>,
-    robot: Res<Robot>,
-    bonds: Res<Bonds>,
-    layout: Res<RobotLayout>,
-) {
-    let mut refusal = None;
-    for fact in facts.read() {
-        if let SimFact::Recording(RecordingFact::Failed { reason, .. }) = fact {
-            run.give_up(reason.clone());
-        }
-        if let SimFact::Refused {
-            cause: Some(cause),
-            reason,
-        } = fact
-            && Some(*cause) == *issued
-        {
-            refusal = Some(reason.as_str());
-        }
-    }
-    let objects = index.iter().filter_map(|entity| {
-        let (spec, transform) = objects.get(entity).ok()?;
-        Some(ScenarioObject {
-            entity,
-            spec,
-            pose: Pose::from(transform),
-            holder: hands.holder_of(entity),
-        })
-    });
-    let seen = Seen {
-        objects: objects.collect(),
-        table: tables.iter().next().copied(),
-        selected: hands.selected,
-        paused: paused.0,
-        robot: &robot,
-        bonds: &bonds,
-        layout: &layout,
-    };
-    *issued = run
-        .tick(&seen, refusal)
-        .map(|command| commands.write(Actor::Scenario, command));
-}
-
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{CommandSystems, CorePlugin, IssuedCommand, SceneSpec, StepApp as _};
+    use tabletop_core::{
+        CommandId, CommandSystems, CorePlugin, IssuedCommand, SceneSpec, SimFact, StepApp as _,
+    };
 
     use super::*;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use tabletop_core::{Random, SceneSpec, TICKS_PER_SECOND, seen_from};
 
 use crate::{
-    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all,
+    Check, LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all,
     reach::ScenarioReach,
 };
 
@@ -83,6 +83,36 @@ impl Program {
             steps,
             random,
         })
+    }
+
+    /// A program without steps.
+    pub(crate) const fn empty(seed: u64) -> Self {
+        Self {
+            limit: DEFAULT_LIMIT_SECONDS * TICKS_PER_SECOND as u64,
+            steps: Vec::new(),
+            random: Random::new(seed),
+        }
+    }
+
+    /// The scene that its first step puts on the table, if it does.
+    pub fn scene(&self) -> Option<&SceneSpec> {
+        match &self.steps.first()?.action {
+            ProgramAction::SetScene(scene) => Some(scene),
+            ProgramAction::Do(_) => None,
+        }
+    }
+
+    /// The checks after its last act: its goal.
+    pub fn goal(&self) -> Vec<Check> {
+        let mut goal = Vec::new();
+        for step in &self.steps {
+            match &step.action {
+                ProgramAction::Do(Step::Expect(check)) => goal.push(check.clone()),
+                ProgramAction::Do(step) if step.is_idle() => {}
+                ProgramAction::SetScene(_) | ProgramAction::Do(_) => goal.clear(),
+            }
+        }
+        goal
     }
 
     /// True if it only prepares: no step lets time pass for something to happen, as `Wait` and `Glide` do.

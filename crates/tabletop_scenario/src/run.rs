@@ -25,6 +25,10 @@ pub struct ScenarioRun {
     lasting: Vec<usize>,
     /// Number of ticks since the last step.
     lasted: u64,
+    /// Whether checks of placement must last after the last step.
+    ends: bool,
+    /// Whether the state after the last tick was taken in when the program before ended.
+    has_observed: bool,
     outcome: Outcome,
 }
 
@@ -51,8 +55,29 @@ impl ScenarioRun {
             ticks: 0,
             lasting: Vec::new(),
             lasted: 0,
+            ends: true,
+            has_observed: false,
             outcome: Outcome::Running,
         }
+    }
+
+    /// A run that [goes on](Self::go_on_with) with one program after the other, with random numbers of this seed.
+    pub(crate) fn without_end(seed: u64) -> Self {
+        Self {
+            ends: false,
+            ..Self::new(Program::empty(seed))
+        }
+    }
+
+    /// Begins with another program, in the present state.
+    pub(crate) fn go_on_with(&mut self, program: Program) {
+        self.state.begin_next();
+        self.program = program;
+        self.has_observed = self.outcome != Outcome::Running;
+        self.next = 0;
+        self.commanded = None;
+        self.ticks = 0;
+        self.outcome = Outcome::Running;
     }
 
     /// Its progress.
@@ -78,7 +103,9 @@ impl ScenarioRun {
         if self.outcome != Outcome::Running {
             return None;
         }
-        self.state.observe(seen);
+        if !std::mem::take(&mut self.has_observed) {
+            self.state.observe(seen);
+        }
         if let (Some(step), Some(reason)) = (self.commanded.take(), refusal) {
             return self.fail(step, format!("refused: {reason}"));
         }
@@ -96,6 +123,7 @@ impl ScenarioRun {
                 Err(what) => return self.fail(self.next, what),
                 Ok(StepProgress::Over) => {
                     if let ProgramAction::Do(Step::Expect(check)) = &action
+                        && self.ends
                         && check.is_of_placement()
                     {
                         self.lasting.push(self.next);

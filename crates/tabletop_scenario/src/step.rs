@@ -115,6 +115,50 @@ impl Axis {
 }
 
 impl Step {
+    /// True if it changes nothing in the world: it waits, checks or records.
+    pub(crate) const fn is_idle(&self) -> bool {
+        match self {
+            Self::Wait(_)
+            | Self::WaitUntilRest(_)
+            | Self::WaitUntilThere(_)
+            | Self::Start
+            | Self::Finish
+            | Self::Pause(_)
+            | Self::Select(_)
+            | Self::Expect(_)
+            | Self::Robot(RobotStep::WaitUntilStill(_) | RobotStep::Face(_)) => true,
+            Self::Load { .. }
+            | Self::Clear
+            | Self::Make(_)
+            | Self::With(..)
+            | Self::Grasp(_)
+            | Self::MoveTo(_)
+            | Self::MoveBy(_)
+            | Self::Glide { .. }
+            | Self::Turn { .. }
+            | Self::Release
+            | Self::Destroy
+            | Self::Trigger(_)
+            | Self::TriggerPart(..)
+            | Self::PointTo(_)
+            | Self::Fasten(_)
+            | Self::Loosen(_)
+            | Self::Cut(_)
+            | Self::Undo
+            | Self::Redo
+            | Self::Robot(
+                RobotStep::Show
+                | RobotStep::Hide
+                | RobotStep::Move(_)
+                | RobotStep::Set(_)
+                | RobotStep::Home
+                | RobotStep::ReachTo { .. }
+                | RobotStep::Close(_)
+                | RobotStep::Open(_),
+            ) => false,
+        }
+    }
+
     /// True if it lets time pass for something to happen.
     pub(crate) fn waits(&self) -> bool {
         match self {

@@ -15,13 +15,14 @@ pub mod final_state;
 mod headless;
 mod plugins;
 mod reset;
+pub mod robots;
 pub mod scene_dump;
 pub mod settings;
 pub mod shipped;
 pub mod task_files;
 
-pub use headless::{headless_app, headless_app_with};
+pub use headless::{headless_app, headless_app_with, headless_world};
 pub use plugins::TabletopSimPlugins;
-pub use reset::{ResetPlugin, reset};
+pub use reset::{ResetPlugin, remember_beginning, reset};
 pub use settings::RecordedSettingsPlugin;
 pub use shipped::ShippedFilesPlugin;

@@ -22,7 +22,8 @@ struct InitialWorld {
     camera: Option<HeadCamera>,
 }
 
-fn remember_beginning(world: &mut World) {
+/// Makes the present moment the one to which [`reset`] leads. Nothing may be on the table, so that an episode begins in an empty world.
+pub fn remember_beginning(world: &mut World) {
     let beginning = InitialWorld {
         world: WorldSnapshot::take(world),
         camera: world.get_resource().copied(),

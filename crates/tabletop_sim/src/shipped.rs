@@ -19,17 +19,41 @@ use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 /// The folders of a working folder.
 pub const WORKING_FOLDERS: [&str; 5] = ["tablesetup", "matlab", "scenarios", "python", "learners"];
 
-/// Their contents.
-static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
-    include_dir!("$CARGO_MANIFEST_DIR/../../tablesetup"),
-    include_dir!("$CARGO_MANIFEST_DIR/../../matlab"),
-    include_dir!("$CARGO_MANIFEST_DIR/../../scenarios"),
-    include_dir!("$CARGO_MANIFEST_DIR/../../python"),
-    include_dir!("$CARGO_MANIFEST_DIR/../../learners"),
+/// The contents of those that hold nothing else.
+static CONTENTS: [(&str, Dir); 4] = [
+    (
+        "tablesetup",
+        include_dir!("$CARGO_MANIFEST_DIR/../../tablesetup"),
+    ),
+    ("matlab", include_dir!("$CARGO_MANIFEST_DIR/../../matlab")),
+    (
+        "scenarios",
+        include_dir!("$CARGO_MANIFEST_DIR/../../scenarios"),
+    ),
+    (
+        "learners",
+        include_dir!("$CARGO_MANIFEST_DIR/../../learners"),
+    ),
 ];
 
 /// The endings of their files; other files that a script may have left there are not shipped.
 const ENDINGS: [&str; 6] = ["xml", "xsd", "stl", "m", "ron", "py"];
+
+macro_rules! script {
+    ($name:literal) => {
+        ShippedFile {
+            path: concat!("python/", $name),
+            text: include_str!(concat!("../../../python/", $name)),
+        }
+    };
+}
+
+/// The scripts in the folder of the Python package.
+const SCRIPTS: [ShippedFile; 3] = [
+    script!("example.py"),
+    script!("tabletop.py"),
+    script!("wave.py"),
+];
 
 macro_rules! asset {
     ($path:literal) => {
@@ -52,8 +76,7 @@ const ROBOTS: [ShippedFile; 5] = [
 /// All files that are inside the program.
 pub fn shipped_files() -> &'static ShippedFiles {
     static FILES: LazyLock<ShippedFiles> = LazyLock::new(|| {
-        let folders = WORKING_FOLDERS.into_iter().zip(&CONTENTS);
-        let files = folders.flat_map(|(folder, contents)| {
+        let files = CONTENTS.iter().flat_map(|(folder, contents)| {
             contents.files().filter_map(move |file| {
                 let name = file.path().to_str()?;
                 let ending = file.path().extension()?.to_str()?;
@@ -64,7 +87,7 @@ pub fn shipped_files() -> &'static ShippedFiles {
                 })
             })
         });
-        ShippedFiles::new(files.chain(ROBOTS))
+        ShippedFiles::new(files.chain(SCRIPTS).chain(ROBOTS))
     });
     &FILES
 }

@@ -3,9 +3,10 @@
 use std::fmt;
 
 use bevy::prelude::*;
+use serde::Serialize;
 
 /// An obstacle: something that an arm can neither pass nor push away.
-#[derive(Clone, Debug, PartialEq, Eq, Reflect)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Reflect)]
 pub enum Obstacle {
     /// The object of this id.
     Object(String),

@@ -6,7 +6,9 @@ use tabletop_core::{
     RobotCommand, RobotLayout, RobotMode, carry_out,
 };
 
-use crate::command::{joint_targets::JointTargets, reach, visibility};
+use tabletop_robot::reach;
+
+use crate::command::{joint_targets::JointTargets, visibility};
 
 /// Carries out the commands to the robot.
 pub(crate) fn obey(
@@ -28,7 +30,7 @@ pub(crate) fn obey(
                     listed(&layout.limbs, |it| it.name)
                 )
             })?;
-            let angles = reach::solve(world, limb, pose)?;
+            let angles = reach(world, limb, pose)?;
             world.resource_scope(|world, mut targets: Mut<JointTargets>| {
                 targets.send(world.resource::<RobotLayout>(), limb, angles);
             });

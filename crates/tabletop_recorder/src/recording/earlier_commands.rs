@@ -10,7 +10,7 @@ const MOST_BYTES: usize = 64 << 20;
 
 /// The commands since the world was last empty: since the program started, or since a scene was put on the table while no
 /// hand held anything and the robot had not been used.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct EarlierCommands {
     /// The tick of the first command; `None` if they were too many to be kept.
     begin: Option<SimTick>,

@@ -1,7 +1,7 @@
 //! The end of recordings, and their report.
 
 use bevy::prelude::*;
-use tabletop_core::{Recording, RecordingCommand, StepApp as _, WriteCommand as _};
+use tabletop_core::{Recording, RecordingCommand, WriteCommand as _, step_world};
 
 use crate::recording::{recorder::Recorder, report::RecordingReport};
 
@@ -10,16 +10,16 @@ pub fn recording_report(world: &World) -> Option<&RecordingReport> {
     world.get_resource::<Recorder>().map(Recorder::report)
 }
 
-/// Finishes the recording that an app is making, if it is making one.
+/// Finishes the recording that a world is making, if it is making one.
 ///
 /// # Errors
 /// A recording has failed, now or before: the fault, and the remedy.
-pub fn finish_recording(app: &mut App) -> Result<RecordingReport, String> {
-    if app.world().resource::<Recording>().0 {
-        app.world_mut().write_command(RecordingCommand::Finish);
-        app.step(1);
+pub fn finish_recording(world: &mut World) -> Result<RecordingReport, String> {
+    if world.resource::<Recording>().0 {
+        world.write_command(RecordingCommand::Finish);
+        step_world(world, 1);
     }
-    let report = recording_report(app.world()).cloned().unwrap_or_default();
+    let report = recording_report(world).cloned().unwrap_or_default();
     match report.failure {
         Some(failure) => Err(failure),
         None => Ok(report),

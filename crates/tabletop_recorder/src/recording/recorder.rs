@@ -1,6 +1,6 @@
 //! The recorder in the simulation.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 use tabletop_core::{
@@ -106,6 +106,42 @@ pub fn set_earlier_commands(world: &mut World, begin: SimTick, commands: &[Sessi
     if let Some(mut recorder) = world.get_resource_mut::<Recorder>() {
         recorder.earlier = EarlierCommands::since(begin, commands);
     }
+}
+
+/// The commands since a world was last empty, with which its next recording begins. Whoever takes the world back to an earlier moment takes
+/// them back, too.
+#[derive(Clone, Debug)]
+pub struct GivenCommands(Option<EarlierCommands>);
+
+impl GivenCommands {
+    /// Those of a world.
+    pub fn of(world: &World) -> Self {
+        let recorder = world.get_resource::<Recorder>();
+        Self(recorder.map(|recorder| recorder.earlier.clone()))
+    }
+
+    /// Makes them those of a world again.
+    pub fn restore(&self, world: &mut World) {
+        if let (Some(earlier), Some(mut recorder)) = (&self.0, world.get_resource_mut::<Recorder>())
+        {
+            recorder.earlier.clone_from(earlier);
+        }
+    }
+}
+
+/// Chooses the folder of the next recording.
+///
+/// # Errors
+/// A recording runs, or the world has no recorder.
+pub fn record_into(world: &mut World, folder: &Path) -> Result<(), String> {
+    if world.resource::<Recording>().0 {
+        return Err(IS_RUNNING.into());
+    }
+    let Some(mut recorder) = world.get_resource_mut::<Recorder>() else {
+        return Err("nothing of this world can be recorded".into());
+    };
+    folder.clone_into(&mut recorder.destination.folder);
+    Ok(())
 }
 
 /// Follows undo and redo.

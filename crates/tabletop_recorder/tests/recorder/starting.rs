@@ -181,7 +181,7 @@ fn a_folder_that_loses_its_place_ends_the_recording() {
             );
             displace(&place);
             app.step(ticks);
-            let error = finish_recording(&mut app).unwrap_err();
+            let error = finish_recording(app.world_mut()).unwrap_err();
             let reason = "was renamed, replaced or removed during the recording";
             assert!(error.contains(reason), "{number} {ticks}: {error}");
             let stays = |name: &str| place.path().join(name).join("session.jsonl").exists();
@@ -194,10 +194,13 @@ fn a_folder_that_loses_its_place_ends_the_recording() {
 fn the_report_names_moved_recordings_and_failures() {
     let place = Place::new();
     let mut app = app(&place);
-    assert_eq!(finish_recording(&mut app), Ok(RecordingReport::default()));
+    assert_eq!(
+        finish_recording(app.world_mut()),
+        Ok(RecordingReport::default())
+    );
     for number in 0..2 {
         run(&mut app, &[(0, RecordingCommand::Start.into())]);
-        let report = finish_recording(&mut app).unwrap();
+        let report = finish_recording(app.world_mut()).unwrap();
         assert_eq!(report.started, number + 1);
         assert_eq!(report.moved_aside.len(), number);
     }
@@ -207,6 +210,6 @@ fn the_report_names_moved_recordings_and_failures() {
     fs::remove_dir_all(place.demo()).unwrap();
     fs::write(place.demo(), "a file").unwrap();
     run(&mut app, &[(0, RecordingCommand::Start.into())]);
-    let failure = finish_recording(&mut app).unwrap_err();
+    let failure = finish_recording(app.world_mut()).unwrap_err();
     assert!(failure.starts_with("no recording was started"), "{failure}");
 }

@@ -1,14 +1,20 @@
-//! Bringing an end effector to a pose.
+//! Where a limb's angles bring its end effector, and which angles bring it to a pose.
 
 use bevy::prelude::*;
 use tabletop_core::{LimbId, Robot};
 use tabletop_geometry::{Pose, UNITS_PER_METER};
 use tabletop_kinematics::Target;
 
-use tabletop_robot::{Articulation, base, in_meters};
+use crate::articulation::{
+    link_entities::base,
+    tree::{Articulation, in_meters, in_units},
+};
 
-/// Angles of a limb that bring its end effector to a pose in the table's frame, near its present angles.
-pub(crate) fn solve(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, String> {
+/// Angles of a limb, in rad, that bring its end effector to a pose in the table's frame, near its present angles.
+///
+/// # Errors
+/// It cannot reach the pose; the error says how near it comes.
+pub fn reach(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, String> {
     let limb_layout = world.resource::<Articulation>().layout.limb(limb).clone();
     let arm = limb_layout.name;
     if !pose.location.is_finite() || !pose.rotation.is_finite() {
@@ -33,4 +39,11 @@ pub(crate) fn solve(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f
                 unreachable.miss.rotation.to_degrees()
             )
         })
+}
+
+/// The pose, in the table's frame, of a limb's end effector at these angles, in rad.
+pub fn end_effector_at(world: &mut World, limb: LimbId, angles: &[f64]) -> Pose {
+    let base = base(world);
+    let (chain, end_effector) = world.resource::<Articulation>().chain(limb);
+    base * in_units(chain.tip(angles) * end_effector)
 }

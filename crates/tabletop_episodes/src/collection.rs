@@ -1,4 +1,4 @@
-//! The folder of the demonstrations that were made of one.
+//! Folders of numbered recordings that one command makes.
 
 use std::{
     io,
@@ -6,61 +6,59 @@ use std::{
 };
 
 use serde_json::Value;
-use tabletop_recorder::{RecorderError, RecordingReader};
+use tabletop_recorder::{RecorderError, RecordingReader, SessionHeader};
 use tabletop_storage::{
     FolderLock, LockedFolder, Storage, StoredFile, Symlinks, is_taken, read_regular_text,
 };
 
-/// The file with the demonstration and the options of a collection, so that others are not mixed with it.
-const MANIFEST: &str = "multiply.json";
-
 /// The most bytes of it that are read.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Prefix of the hidden folder in which demonstrations are made.
+/// Prefix of the hidden folder in which recordings are made.
 const WORKSHOP: &str = ".making-";
 
-/// A folder of demonstrations made of one, each in a folder of its number. Nobody else makes demonstrations there as long as this exists.
+/// A folder of recordings, each in a folder of its number. Nobody else makes recordings there as long as this exists.
 #[derive(Debug)]
 pub struct Collection {
     folder: PathBuf,
     storage: Storage,
-    /// Where demonstrations are made. One that is whole is moved out of it.
+    /// Where recordings are made. One that is whole is moved out of it.
     workshop: LockedFolder,
     _locked: StoredFile,
 }
 
-/// The error of a folder that takes no demonstrations.
+/// The error of a folder that takes no recordings.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum CollectionError {
-    #[error("{}: the demonstrations there were made with other options or of another demonstration; name a new folder", .0.display())]
+    #[error("{}: the recordings there were made with other options or of something else; name a new folder", .0.display())]
     OtherManifest(PathBuf),
     #[error("{}: it holds something else; name a new folder", .0.display())]
     SomethingElse(PathBuf),
-    #[error("{}: another program makes demonstrations there; wait for its end, or name a new folder", .0.display())]
+    #[error("{}: another program makes recordings there; wait for its end, or name a new folder", .0.display())]
     InUse(PathBuf),
-    #[error("{}: it is no whole demonstration of this collection; move it away, and it is made again", .0.display())]
-    NoDemonstration(PathBuf),
+    #[error("{}: it is no whole recording of this collection; move it away, and it is made again", .0.display())]
+    NoMember(PathBuf),
     #[error("{}: {source}", .path.display())]
     Io { path: PathBuf, source: io::Error },
 }
 
 impl Collection {
-    /// Opens a folder, which is made if it does not exist, for demonstrations with this manifest.
+    /// Opens a folder, which is made if it does not exist, for recordings with this manifest: what they are made of, and the options, so that
+    /// others are not mixed with them. It is in the file of this name.
     ///
     /// # Errors
-    /// It holds something else, or demonstrations of another manifest; or another program makes demonstrations there.
-    pub fn open(folder: &Path, manifest: &Value) -> Result<Self, CollectionError> {
+    /// It holds something else, or recordings of another manifest; or another program makes recordings there.
+    pub fn open(folder: &Path, name: &str, manifest: &Value) -> Result<Self, CollectionError> {
         let storage = Storage::default();
         storage
             .create_folders(folder)
             .map_err(CollectionError::io(folder))?;
-        let path = folder.join(MANIFEST);
+        let path = folder.join(name);
         let locked = {
             let _alone = FolderLock::wait(folder, &storage);
             if !is_taken(&path) {
-                begin(folder, manifest, &storage)?;
+                begin(folder, name, manifest, &storage)?;
             }
             let locked = storage.open(&path).map_err(CollectionError::io(&path))?;
             if !locked.try_lock() {
@@ -83,27 +81,31 @@ impl Collection {
         })
     }
 
-    /// True if the demonstration of a number is there, made with this seed.
+    /// True if the recording of a number is there, whole, and the right one.
     ///
     /// # Errors
     /// Something else is in its place.
-    pub fn holds(&self, number: u64, seed: u64) -> Result<bool, CollectionError> {
+    pub fn holds(
+        &self,
+        number: u64,
+        is_right: impl FnOnce(&SessionHeader) -> bool,
+    ) -> Result<bool, CollectionError> {
         let path = self.place_of(number);
         if !is_taken(&path) || (!path.is_symlink() && self.is_empty(&path)) {
             return Ok(false);
         }
-        match !path.is_symlink() && is_demonstration(&path, number, seed).unwrap_or(false) {
+        match !path.is_symlink() && is_member(&path, is_right).unwrap_or(false) {
             true => Ok(true),
-            false => Err(CollectionError::NoDemonstration(path)),
+            false => Err(CollectionError::NoMember(path)),
         }
     }
 
-    /// The folder in which the demonstration of a number is to be made.
+    /// The folder in which the recording of a number is to be made.
     pub fn part(&self, number: u64) -> PathBuf {
         self.workshop.path().join(name(number))
     }
 
-    /// Puts the demonstration that was made into the collection, and onto the disk.
+    /// Puts the recording that was made into the collection, and onto the disk.
     ///
     /// # Errors
     /// It cannot be moved there.
@@ -147,12 +149,17 @@ impl CollectionError {
 }
 
 /// Writes the manifest into a folder that must be empty.
-fn begin(folder: &Path, manifest: &Value, storage: &Storage) -> Result<(), CollectionError> {
+fn begin(
+    folder: &Path,
+    name: &str,
+    manifest: &Value,
+    storage: &Storage,
+) -> Result<(), CollectionError> {
     let entries = storage.entries(folder);
     if !entries.map_err(CollectionError::io(folder))?.is_empty() {
         return Err(CollectionError::SomethingElse(folder.to_owned()));
     }
-    let path = folder.join(MANIFEST);
+    let path = folder.join(name);
     let text = format!("{manifest:#}\n");
     let written = storage.write_new(&path, text.as_bytes());
     written.map_err(CollectionError::io(&path))
@@ -162,13 +169,11 @@ fn name(number: u64) -> String {
     format!("{number:04}")
 }
 
-/// True if a recording is whole, and the demonstration of this number and seed.
-fn is_demonstration(folder: &Path, number: u64, seed: u64) -> Result<bool, RecorderError> {
+/// True if a recording is whole, and the right one.
+fn is_member(
+    folder: &Path,
+    is_right: impl FnOnce(&SessionHeader) -> bool,
+) -> Result<bool, RecorderError> {
     let recording = RecordingReader::open(folder)?;
-    let multiplied = recording.header().settings.get(super::MULTIPLIED);
-    let is = |name: &str, value: u64| {
-        let found = multiplied.and_then(|multiplied| multiplied.get(name));
-        found.and_then(Value::as_u64) == Some(value)
-    };
-    Ok(recording.cut_off_at().is_none() && is("number", number) && is("seed", seed))
+    Ok(recording.cut_off_at().is_none() && is_right(recording.header()))
 }

@@ -1,0 +1,151 @@
+//! Actions of the robot, as numbers from -1 to 1.
+
+use bevy::prelude::*;
+use tabletop_core::{
+    Drive, JointId, JointName, LimbId, MANUAL_SPEED, Robot, RobotCommand, RobotLayout,
+    WriteCommand as _, step_world,
+};
+use tabletop_geometry::{Pose, turn_about};
+use tabletop_robot::reach;
+
+/// Distance, in units, and angle about the vertical, in rad, by which a step moves an end effector at most: with 20 steps a second 2 units/s and
+/// 2 rad/s.
+const LONGEST_DELTA: (f32, f32) = (0.1, 0.1);
+
+/// The actions of an environment. All their numbers are from -1 to 1; others count as the nearest of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ActionSpace {
+    /// The velocity of each joint of the limbs, limb by limb from the base, up to 1 rad/s; then of each gripper's opening, up to 1 unit/s.
+    JointVelocity,
+    /// The position of the same joints and openings between their limits, which they approach at 1 rad/s and 1 unit/s.
+    JointPosition,
+    /// For each limb the displacement of its end effector along x, y and z, up to 0.1 units a step, its turn about the vertical, up to 0.1 rad a
+    /// step, and the velocity of its gripper's opening, up to 1 unit/s. An end effector keeps its other angles.
+    EndEffectorDelta,
+    /// The demonstrator's hand takes what is highest at a place of the table and puts it down at another: x and y of both places, as shares of
+    /// the table's half extents, and the turn about the vertical in shares of π. A step lasts as long as that takes.
+    PickPlace,
+}
+
+impl ActionSpace {
+    /// All of them.
+    pub const ALL: [Self; 4] = [
+        Self::JointVelocity,
+        Self::JointPosition,
+        Self::EndEffectorDelta,
+        Self::PickPlace,
+    ];
+
+    /// Its name in options.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::JointVelocity => "joint_velocity",
+            Self::JointPosition => "joint_position",
+            Self::EndEffectorDelta => "end_effector_delta",
+            Self::PickPlace => "pick_place",
+        }
+    }
+
+    /// Number of the numbers of an action.
+    pub fn len(self, layout: &RobotLayout) -> usize {
+        match self {
+            Self::JointVelocity | Self::JointPosition => driven(layout).count(),
+            Self::EndEffectorDelta => 5 * layout.limbs.len(),
+            Self::PickPlace => 5,
+        }
+    }
+}
+
+/// The joints that actions move.
+fn driven(layout: &RobotLayout) -> impl Iterator<Item = JointId> {
+    let joints = layout
+        .limbs
+        .iter()
+        .flat_map(|limb| limb.joints.iter().copied());
+    joints.chain(layout.limbs.iter().map(|limb| limb.gripper.joint))
+}
+
+/// What the actions of an episode have ordered so far.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Orders {
+    /// The joints that actions move, with their limits.
+    joints: Vec<(JointName, [f64; 2])>,
+    /// The poses to which end effectors were sent.
+    targets: Vec<Pose>,
+}
+
+impl Orders {
+    /// No orders, to a robot at rest.
+    pub fn new(world: &World) -> Self {
+        let layout = world.resource::<RobotLayout>();
+        let joints = driven(layout).map(|joint| layout.joint(joint));
+        let limbs = world.resource::<Robot>().limbs.iter();
+        Self {
+            joints: joints.map(|joint| (joint.name, joint.limits)).collect(),
+            targets: limbs.map(|limb| limb.end_effector).collect(),
+        }
+    }
+
+    /// Simulates these ticks with the velocities of an action.
+    pub fn move_at(&self, world: &mut World, action: &[f32], ticks: u64) {
+        let velocities = self.joints.iter().zip(action);
+        let drives = velocities
+            .map(|(&(name, _), &share)| (name, Drive::Velocity(f64::from(share) * MANUAL_SPEED)));
+        drive_for(world, drives.collect(), ticks);
+    }
+
+    /// Simulates these ticks on the way to the positions of an action.
+    pub fn move_to(&self, world: &mut World, action: &[f32], ticks: u64) {
+        let positions = self.joints.iter().zip(action);
+        let drives = positions.map(|(&(name, [low, high]), &share)| {
+            let position = low + (high - low) * (f64::from(share) + 1.0) / 2.0;
+            (name, Drive::Toward(position))
+        });
+        world.write_command(RobotCommand::Drive(drives.collect()));
+        step_world(world, ticks);
+    }
+
+    /// Simulates these ticks with end effectors displaced by an action. One that cannot get there stays where it is.
+    pub fn move_by(&mut self, world: &mut World, action: &[f32], ticks: u64) {
+        let mut grippers = Vec::new();
+        for (number, (target, action)) in self.targets.iter_mut().zip(action.chunks(5)).enumerate()
+        {
+            let &[x, y, z, turn, opening] = action else {
+                continue;
+            };
+            let limb = LimbId(number as u8);
+            let layout = world.resource::<RobotLayout>();
+            let limb_layout = layout.limb(limb);
+            let gripper = layout.joint(limb_layout.gripper.joint).name;
+            grippers.push((gripper, Drive::Velocity(f64::from(opening) * MANUAL_SPEED)));
+            if [x, y, z, turn] == [0.0; 4] {
+                continue;
+            }
+            let names: Vec<_> = limb_layout
+                .joints
+                .iter()
+                .map(|&joint| layout.joint(joint).name)
+                .collect();
+            let next = Pose::new(
+                target.location + Vec3::new(x, y, z) * LONGEST_DELTA.0,
+                (turn_about(Vec3::Z, turn * LONGEST_DELTA.1) * target.rotation).normalize(),
+            );
+            if let Ok(angles) = reach(world, limb, next) {
+                *target = next;
+                let drives = names.into_iter().zip(angles.into_iter().map(Drive::Toward));
+                world.write_command(RobotCommand::Drive(drives.collect()));
+            } else {
+                *target = world.resource::<Robot>().limb(limb).end_effector;
+            }
+        }
+        drive_for(world, grippers, ticks);
+    }
+}
+
+/// Simulates these ticks with the same velocities in each.
+fn drive_for(world: &mut World, drives: Vec<(JointName, Drive)>, ticks: u64) {
+    for _ in 0..ticks {
+        world.write_command(RobotCommand::Drive(drives.clone()));
+        step_world(world, 1);
+    }
+}

@@ -1,0 +1,362 @@
+//! An environment of reinforcement learning: a task, and a robot that acts.
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use tabletop_assembly::{IdAllocator, assemble};
+use tabletop_core::{
+    ObjectIndex, Picture, Random, Robot, RobotCommand, RobotLayout, SceneCommand, WriteCommand as _,
+};
+use tabletop_episodes::robot_body;
+use tabletop_film::FilmCamera;
+use tabletop_planner::RobotBody;
+use tabletop_scenario::{Check, Judge, Verdict};
+use tabletop_sim::{remember_beginning, reset};
+
+use crate::{
+    action::{ActionSpace, Orders},
+    error::EnvironmentError,
+    observation::{ObservationSpace, StateLayout},
+    pick_place::pick_and_place,
+    table_world::{Beginning, Moment, TableWorld, WorldOptions, robot_plugin},
+    task::EnvironmentTask,
+};
+
+/// The options of an environment.
+#[derive(Clone, Debug)]
+pub struct EnvironmentOptions {
+    /// A `robot.ron` or a URDF; `None` for Baxter.
+    pub robot: Option<PathBuf>,
+    /// Whether the arms are moved by motors with limited torque.
+    pub is_dynamic: bool,
+    /// What it observes.
+    pub observation: ObservationSpace,
+    /// How the robot acts.
+    pub action: ActionSpace,
+    /// The reward.
+    pub reward: Reward,
+    /// The camera of its pictures, with their size.
+    pub camera: FilmCamera,
+    /// Whether the edges in its pictures are smooth, which takes three times as long.
+    pub is_smooth: bool,
+    /// Number of ticks of 1/60 s in a step.
+    pub ticks_per_step: u64,
+    /// Number of steps after which an episode is cut off.
+    pub most_steps: u64,
+}
+
+impl Default for EnvironmentOptions {
+    fn default() -> Self {
+        Self {
+            robot: None,
+            is_dynamic: false,
+            observation: ObservationSpace::State,
+            action: ActionSpace::JointVelocity,
+            reward: Reward::Dense,
+            camera: FilmCamera::head(128, 128),
+            is_smooth: false,
+            ticks_per_step: 3,
+            most_steps: 400,
+        }
+    }
+}
+
+/// The reward of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reward {
+    /// The units by which the world has come nearer to its goal in this step, and 1 if it is there. It is the mean over the checks of the distance
+    /// of the two places that a check compares, and half the distance of the nearest end effector from what is to be moved next.
+    Dense,
+    /// 1 if the world is at its goal, 0 otherwise.
+    Sparse,
+}
+
+impl Reward {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Dense, Self::Sparse];
+
+    /// Its name in options.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dense => "dense",
+            Self::Sparse => "sparse",
+        }
+    }
+}
+
+/// The result of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Transition {
+    /// The reward.
+    pub reward: f32,
+    /// Whether the world is at its goal.
+    pub is_success: bool,
+    /// Whether the episode is cut off.
+    pub is_truncated: bool,
+}
+
+/// An environment. It can be sent to another thread.
+///
+/// ```
+/// use tabletop_environment::{Environment, EnvironmentOptions, EnvironmentTask};
+///
+/// let task = EnvironmentTask::of_scenario("scenarios/stack_three.ron".as_ref(), true, &[])?;
+/// let mut environment = Environment::new(task, &EnvironmentOptions::default())?;
+/// environment.reset(Some(7))?;
+/// let transition = environment.step(&[0.5; 16])?;
+/// assert!(!transition.is_success);
+/// let mut state = vec![0.0; environment.state_layout().numbers()];
+/// environment.observe_state(&mut state);
+/// assert!((state[0] - 0.0).abs() < 3.2);
+/// # Ok::<_, tabletop_environment::EnvironmentError>(())
+/// ```
+pub struct Environment {
+    world: TableWorld,
+    task: EnvironmentTask,
+    options: EnvironmentOptions,
+    body: Option<RobotBody>,
+    layout: StateLayout,
+    action: Vec<f32>,
+    random: Random,
+    episode: Episode,
+}
+
+/// The state of an episode, beside the world.
+#[derive(Clone, Debug, Default)]
+struct Episode {
+    goal: Vec<Check>,
+    judge: Judge,
+    verdicts: Vec<Verdict>,
+    orders: Orders,
+    steps: u64,
+    /// The distance from the goal, of which the dense reward is the decrease.
+    distance: f32,
+}
+
+/// An environment at a moment, to which it can [return](Environment::restore).
+pub struct EnvironmentMoment {
+    world: Moment,
+    random: Random,
+    episode: Episode,
+}
+
+impl Environment {
+    /// An environment. Its first episode begins with a [reset](Self::reset).
+    ///
+    /// # Errors
+    /// A file cannot be read or has a fault.
+    pub fn new(
+        task: EnvironmentTask,
+        options: &EnvironmentOptions,
+    ) -> Result<Self, EnvironmentError> {
+        if options.ticks_per_step == 0 || options.most_steps == 0 {
+            return Err(EnvironmentError::Option(
+                "expected at least one tick in a step, and one step in an episode".into(),
+            ));
+        }
+        let mut world = TableWorld::new(&WorldOptions {
+            beginning: Beginning::Empty,
+            robot: options.robot.clone(),
+            is_dynamic: options.is_dynamic,
+            is_recordable: false,
+            shows_robot: options.action != ActionSpace::PickPlace,
+            ..WorldOptions::default()
+        })?;
+        world.set_smooth(options.is_smooth);
+        remember_beginning(world.world_mut());
+        let plan = task.plan(world.world_mut(), None, &mut Random::new(0))?;
+        let body = match options.action == ActionSpace::PickPlace {
+            true => None,
+            false => {
+                let plugin = robot_plugin(options.robot.as_deref(), options.is_dynamic)?;
+                let body = robot_body(&plugin, &plan.scene.table);
+                Some(body.map_err(|error| EnvironmentError::Option(error.to_string()))?)
+            }
+        };
+        let robot = world.world().resource::<RobotLayout>();
+        let objects = assemble(&plan.scene, &mut IdAllocator::default()).objects;
+        let layout = StateLayout {
+            joints: robot.joints.len(),
+            limbs: robot.limbs.len(),
+            objects: objects.into_iter().map(|object| object.id).collect(),
+            checks: plan.goal.len(),
+        };
+        let action = vec![0.0; options.action.len(robot)];
+        Ok(Self {
+            world,
+            task,
+            options: options.clone(),
+            body,
+            layout,
+            action,
+            random: Random::new(0),
+            episode: Episode::default(),
+        })
+    }
+
+    /// Begins an episode: with a seed that of this seed, in any environment of this task; otherwise the next one.
+    ///
+    /// # Errors
+    /// There is no room for a random arrangement.
+    pub fn reset(&mut self, seed: Option<u64>) -> Result<(), EnvironmentError> {
+        if let Some(seed) = seed {
+            self.random = Random::new(seed);
+        }
+        self.world.drop_removed();
+        let world = self.world.world_mut();
+        reset(world);
+        let plan = self
+            .task
+            .plan(world, self.body.as_ref(), &mut self.random)?;
+        world.write_command(SceneCommand::Set(Box::new(plan.scene)));
+        if !plan.markers.is_empty() {
+            world.write_command(RobotCommand::ShowMarkers(plan.markers));
+        }
+        self.world.step(1);
+        self.world.take_facts();
+        self.episode = Episode {
+            goal: plan.goal,
+            orders: Orders::new(self.world.world()),
+            ..Episode::default()
+        };
+        self.judge(1)?;
+        self.episode.distance = self.distance();
+        Ok(())
+    }
+
+    /// Acts for a step.
+    ///
+    /// # Errors
+    /// The action has the wrong length.
+    pub fn step(&mut self, action: &[f32]) -> Result<Transition, EnvironmentError> {
+        if action.len() != self.action.len() {
+            return Err(EnvironmentError::Action {
+                found: action.len(),
+                expected: self.action.len(),
+            });
+        }
+        for (own, &number) in self.action.iter_mut().zip(action) {
+            *own = match number.is_nan() {
+                true => 0.0,
+                false => number.clamp(-1.0, 1.0),
+            };
+        }
+        let before = self.world.tick();
+        let ticks = self.options.ticks_per_step;
+        let (world, orders) = (&mut self.world, &mut self.episode.orders);
+        match self.options.action {
+            ActionSpace::JointVelocity => orders.move_at(world.world_mut(), &self.action, ticks),
+            ActionSpace::JointPosition => orders.move_to(world.world_mut(), &self.action, ticks),
+            ActionSpace::EndEffectorDelta => orders.move_by(world.world_mut(), &self.action, ticks),
+            ActionSpace::PickPlace => pick_and_place(world, &self.action),
+        }
+        self.world.take_facts();
+        let passed = self.world.tick() - before;
+        self.judge(passed)?;
+        self.episode.steps += 1;
+        let is_success = self.episode.verdicts.iter().all(|it| it.failure.is_none());
+        let success = f32::from(u8::from(is_success));
+        let reward = match self.options.reward {
+            Reward::Sparse => success,
+            Reward::Dense => {
+                let before = self.episode.distance;
+                self.episode.distance = self.distance();
+                before - self.episode.distance + success
+            }
+        };
+        Ok(Transition {
+            reward,
+            is_success,
+            is_truncated: !is_success && self.episode.steps >= self.options.most_steps,
+        })
+    }
+
+    fn judge(&mut self, ticks: u64) -> Result<(), EnvironmentError> {
+        let world = self.world.world_mut();
+        let episode = &mut self.episode;
+        let failed = |error: BevyError| EnvironmentError::World(error.to_string());
+        episode.judge.observe(world, ticks).map_err(failed)?;
+        episode.verdicts = episode.judge.judge(world, &episode.goal).map_err(failed)?;
+        Ok(())
+    }
+
+    /// The distance from the goal.
+    fn distance(&self) -> f32 {
+        let verdicts = &self.episode.verdicts;
+        let gaps: f32 = verdicts.iter().map(|it| it.gap.length()).sum();
+        let mean = gaps / verdicts.len().max(1) as f32;
+        let undone = verdicts.iter().position(|it| it.failure.is_some());
+        let next = undone.and_then(|undone| self.episode.goal[undone].moved());
+        let world = self.world.world();
+        let object = next.and_then(|id| world.resource::<ObjectIndex>().get(id));
+        let place = object.and_then(|object| world.get::<Transform>(object));
+        let limbs = &world.resource::<Robot>().limbs;
+        let away = place.map(|place| {
+            let away = limbs
+                .iter()
+                .map(|limb| limb.end_effector.location.distance(place.translation));
+            away.fold(f32::INFINITY, f32::min)
+        });
+        mean + away.filter(|away| away.is_finite()).unwrap_or(0.0) / 2.0
+    }
+
+    /// The order of the numbers of a state.
+    pub const fn state_layout(&self) -> &StateLayout {
+        &self.layout
+    }
+
+    /// Number of the numbers of an action.
+    pub const fn action_len(&self) -> usize {
+        self.action.len()
+    }
+
+    /// Its options.
+    pub const fn options(&self) -> &EnvironmentOptions {
+        &self.options
+    }
+
+    /// Writes the state into a slice of [as many](StateLayout::numbers) numbers.
+    pub fn observe_state(&self, state: &mut [f32]) {
+        self.layout
+            .write(self.world.world(), &self.episode.verdicts, state);
+    }
+
+    /// The picture of its camera.
+    ///
+    /// # Errors
+    /// The robot has no such camera.
+    pub fn picture(&mut self) -> Result<&Picture, EnvironmentError> {
+        let camera = std::slice::from_ref(&self.options.camera);
+        Ok(&self.world.shoot(camera)?[0].picture)
+    }
+
+    /// The checks of the episode, compared with the world.
+    pub fn verdicts(&self) -> impl Iterator<Item = (&Check, &Verdict)> {
+        self.episode.goal.iter().zip(&self.episode.verdicts)
+    }
+
+    /// The present moment.
+    pub fn snapshot(&mut self) -> EnvironmentMoment {
+        EnvironmentMoment {
+            world: self.world.snapshot(),
+            random: self.random.clone(),
+            episode: self.episode.clone(),
+        }
+    }
+
+    /// Returns to a moment of this environment, bit for bit.
+    ///
+    /// # Errors
+    /// As [`TableWorld::restore`].
+    pub fn restore(&mut self, moment: &EnvironmentMoment) -> Result<(), EnvironmentError> {
+        self.world.restore(&moment.world)?;
+        self.random = moment.random.clone();
+        self.episode = moment.episode.clone();
+        Ok(())
+    }
+
+    /// Its world.
+    pub const fn table_world(&mut self) -> &mut TableWorld {
+        &mut self.world
+    }
+}

@@ -1,0 +1,56 @@
+//! The simulator for Python: the part of the package `tabletop` that is not written in Python.
+
+mod camera;
+mod environment;
+mod error;
+mod options;
+mod vector;
+mod world;
+
+use pyo3::prelude::*;
+
+/// The part of the package that is not written in Python.
+#[pymodule]
+mod _tabletop {
+    use std::{ffi::OsString, path::PathBuf, process::ExitCode};
+
+    use numpy::PyArray3;
+    use pyo3::prelude::*;
+    use tabletop::environment;
+
+    #[pymodule_export]
+    use crate::{
+        environment::{Environment, EnvironmentSnapshot},
+        error::Error,
+        vector::Vector,
+        world::{Snapshot, World},
+    };
+
+    /// The command line: carries out arguments, of which the first is the program's name, and returns the exit code.
+    #[pyfunction]
+    fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+        let code = py.detach(|| tabletop::cli::main(arguments));
+        let codes = 0..=u8::MAX;
+        let code = codes.clone().find(|&it| ExitCode::from(it) == code);
+        code.unwrap_or(u8::MAX)
+    }
+
+    /// The names of the environments that come with the program.
+    #[pyfunction]
+    fn registered() -> Vec<String> {
+        let tasks = environment::registered_tasks().into_iter();
+        tasks.map(|task| task.name).collect()
+    }
+
+    /// A picture of a recording: rows x columns x 3 numbers from 0 to 255.
+    #[pyfunction]
+    fn read_png(py: Python<'_>, file: PathBuf) -> PyResult<Bound<'_, PyArray3<u8>>> {
+        crate::camera::read_png(py, &file)
+    }
+
+    /// The version of the program.
+    #[pyfunction]
+    const fn version() -> &'static str {
+        env!("CARGO_PKG_VERSION")
+    }
+}
