@@ -37,14 +37,18 @@ mod robot;
 mod robot_options;
 mod run;
 mod script;
+mod seeds;
+mod shard;
 mod soak;
 mod terminal;
 mod video;
 mod window;
 
-use std::{env, process::ExitCode};
+use std::{ffi::OsString, process::ExitCode};
 
 use clap::{CommandFactory as _, Parser, Subcommand};
+
+pub use film_camera::camera as read_camera;
 
 use failure::{Failure, WRONG_INPUT};
 use output::Output;
@@ -137,9 +141,9 @@ Exit codes:
   1  the run failed: a step or check of a scenario, a script, a replay that differs, a file that cannot be written
   2  wrong usage or input: an unknown option, a file that is missing or wrong";
 
-/// Reads the command line and carries it out.
-pub fn main() -> ExitCode {
-    let cli: Cli = match arguments::read(env::args_os()) {
+/// Reads a command line, of which the program's name is the first argument, and carries it out.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli: Cli = match arguments::read(arguments) {
         Ok(cli) => cli,
         Err(code) => return code,
     };

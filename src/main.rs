@@ -1,9 +1,7 @@
-//! The command line.
+//! The program.
 
-mod cli;
-
-use std::process::ExitCode;
+use std::{env, process::ExitCode};
 
 fn main() -> ExitCode {
-    cli::main()
+    tabletop::cli::main(env::args_os())
 }

@@ -8,9 +8,9 @@ use super::{failure::WRONG_INPUT, terminal::say};
 
 /// Reads the arguments. If there is nothing to carry out, help or the reason is printed, and the exit code returned.
 pub(super) fn read<Line: Parser>(
-    arguments: impl Iterator<Item = OsString>,
+    arguments: impl IntoIterator<Item = OsString>,
 ) -> Result<Line, ExitCode> {
-    let arguments: Vec<_> = arguments.collect();
+    let arguments: Vec<_> = arguments.into_iter().collect();
     // Without colours, a refusal has no other escape sequences than those of the arguments.
     let uncoloured = Line::command().styles(Styles::plain());
     let read = uncoloured.try_get_matches_from(&arguments);

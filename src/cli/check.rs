@@ -5,8 +5,8 @@ use std::{
     process::ExitCode,
 };
 
+use crate::{scene_dump, shipped::task_reader, xml::TaskReader};
 use clap::Args;
-use tabletop::{scene_dump, shipped::task_reader, xml::TaskReader};
 
 use super::{Failure, Output, WRONG_INPUT, allowed_paths::AllowedPaths, terminal::say};
 

@@ -1,6 +1,6 @@
 //! Recordings that were cut off.
 
-use tabletop::recorder::RecordingReader;
+use crate::recorder::RecordingReader;
 
 use super::terminal::say;
 

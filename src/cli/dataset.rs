@@ -2,11 +2,11 @@
 
 use std::{collections::BTreeSet, path::PathBuf, process::ExitCode};
 
-use clap::{Args, Subcommand};
-use tabletop::dataset::{
+use crate::dataset::{
     CheckOptions, DatasetFolder, DatasetPart, DatasetSummary, check, divide, merge, repair,
     statistics, summarize, trim, write_card,
 };
+use clap::{Args, Subcommand};
 
 use super::{
     Failure, Output, import::failed, number_run::run_of, progress::ProgressLine,

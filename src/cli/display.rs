@@ -2,8 +2,8 @@
 
 use std::num::NonZeroU32;
 
+use crate::window::{Antialiasing, DisplayOptions, Resolution};
 use clap::{ArgAction, Args};
-use tabletop::window::{Antialiasing, DisplayOptions, Resolution};
 
 use super::range::NumberRange;
 

@@ -1,7 +1,7 @@
 //! Durations of simulations without a window.
 
+use crate::core::{ClockCommand, StepApp as _, TICKS_PER_SECOND, WriteCommand as _};
 use bevy::prelude::*;
-use tabletop::core::{ClockCommand, StepApp as _, TICKS_PER_SECOND, WriteCommand as _};
 
 use super::range::NumberRange;
 

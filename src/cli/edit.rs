@@ -2,12 +2,12 @@
 
 use std::{collections::BTreeSet, ops::RangeInclusive, path::PathBuf, process::ExitCode};
 
-use bevy::prelude::default;
-use clap::Args;
-use tabletop::{
+use crate::{
     recorder::RecorderPlugin,
     replay::{Replay, SegmentEdit},
 };
+use bevy::prelude::default;
+use clap::Args;
 
 use super::{
     Failure, allowed_paths::AllowedPaths, cut_off::say_if_cut_off, number_run::run_of,

@@ -5,13 +5,13 @@ use std::{
     process::ExitCode,
 };
 
-use clap::Args;
-use serde_json::json;
-use tabletop::{
+use crate::{
     assembly::{IdAllocator, assemble},
     recorder::{RecorderError, RecordingReader, TICKS_PER_FRAME, read_original},
     task::{Demonstration, DetourKind, Furniture, Requirements, Role, Task, TaskStep},
 };
+use clap::Args;
+use serde_json::json;
 use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
 
 use super::{

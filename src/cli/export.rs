@@ -2,8 +2,7 @@
 
 use std::{ffi::OsString, path::PathBuf, process::ExitCode, thread, time::Instant};
 
-use clap::{Args, ValueEnum};
-use tabletop::{
+use crate::{
     core::TICKS_PER_SECOND,
     export::{
         ActionKind, DatasetFormat, EpisodeSelection, ExportError, ExportSummary, LeRobot, Matlab,
@@ -11,6 +10,7 @@ use tabletop::{
     },
     recorder::RecordingReader,
 };
+use clap::{Args, ValueEnum};
 
 use super::{
     Failure, Output,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tabletop::{core::SceneSpec, shipped::task_reader};
+use crate::{core::SceneSpec, shipped::task_reader};
 
 /// The scene of a task file, which may include files in the allowed folders, or all its faults.
 pub(super) fn read_faultless_task(file: &Path, allowed: &[PathBuf]) -> Result<SceneSpec, String> {

@@ -1,10 +1,10 @@
 //! Cameras as options: `head`, `left_hand`, `above=0,-8,12` or `above=0,-8,12,0,0,1`.
 
-use bevy::math::Vec3;
-use tabletop::{
+use crate::{
     film::{CameraPlace, FilmCamera},
     geometry::Pose,
 };
+use bevy::math::Vec3;
 
 use super::range::NumberRange;
 
@@ -46,8 +46,11 @@ pub(super) fn cameras(text: &str) -> Result<FilmCameras, String> {
     Ok(FilmCameras(cameras))
 }
 
-/// Reads a camera.
-pub(super) fn camera(text: &str) -> Result<FilmCamera, String> {
+/// Reads a camera as the options of the command line name it: `head`, `left_hand`, `above=0,-8,12` or `above=0,-8,12,0,0,1`.
+///
+/// # Errors
+/// The text names no camera; the error says what was expected.
+pub fn camera(text: &str) -> Result<FilmCamera, String> {
     let FilmCameras(mut cameras) = cameras(text)?;
     match (cameras.pop(), cameras.len()) {
         (Some(camera), 0) => Ok(camera),

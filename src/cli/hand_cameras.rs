@@ -1,7 +1,7 @@
 //! The option that records the pictures of hand cameras.
 
+use crate::{core::RobotLayout, recorder::HandPictures, robot::RobotPlugin};
 use clap::Args;
-use tabletop::{core::RobotLayout, recorder::HandPictures, robot::RobotPlugin};
 
 use super::Failure;
 

@@ -7,9 +7,7 @@ use std::{
     time::Instant,
 };
 
-use bevy::prelude::*;
-use clap::Args;
-use tabletop::{
+use crate::{
     TabletopSimPlugins,
     assembly::{IdAllocator, assemble},
     headless_app_with,
@@ -24,6 +22,8 @@ use tabletop::{
     robot_body, run_episodes, scene_at_beginning,
     task::{Requirements, Task},
 };
+use bevy::prelude::*;
+use clap::Args;
 use tabletop_core::{
     RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimTick, StepApp as _,
     TICKS_PER_SECOND, WriteCommand as _,
@@ -38,6 +38,7 @@ use super::{
     range::{NumberRange, SEEDS},
     recorded::{self, say_moved_aside},
     robot_options::RobotChoice,
+    shard::ShardOption,
     terminal::{say, show_warnings},
 };
 
@@ -45,6 +46,7 @@ const TRIALS: NumberRange<u64> = NumberRange::whole(1, 100_000);
 
 #[derive(Args)]
 #[command(mut_group("HandCameraOption", |options| options.requires("record")))]
+#[command(mut_group("ShardOption", |options| options.requires("trials")))]
 pub(super) struct ImitateArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
@@ -60,6 +62,8 @@ pub(super) struct ImitateArgs {
     /// Do this many trials, from 1 to 100000, with random places by the seeds from `--seed` (or 0) on, and print their results
     #[arg(long, value_name = "N", value_parser = TRIALS, allow_negative_numbers = true)]
     trials: Option<u64>,
+    #[command(flatten)]
+    shard: ShardOption,
     /// Exchange the colours of objects, as the seed decides
     #[arg(long)]
     exchange_colors: bool,
@@ -123,7 +127,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     };
     let mut trials = Vec::new();
     run_episodes(
-        0..args.trials.unwrap_or(1),
+        args.shard.share_of(0..args.trials.unwrap_or(1)),
         1,
         attempt,
         |_, trial: Trial| {

@@ -2,8 +2,8 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
+use crate::dataset::{DatasetError, Import, import_recording};
 use clap::Args;
-use tabletop::dataset::{DatasetError, Import, import_recording};
 
 use super::{
     Failure, Output,

@@ -6,12 +6,12 @@ use std::{
     process::ExitCode,
 };
 
-use clap::Args;
-use tabletop::{
+use crate::{
     core::ShippedFile,
     shipped::{WORKING_FOLDERS, shipped_files},
     storage::{Storage, Symlinks, parent_of, read_regular_file},
 };
+use clap::Args;
 
 use super::{Failure, Output};
 

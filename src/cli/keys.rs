@@ -2,9 +2,9 @@
 
 use std::{fmt::Write as _, path::PathBuf, process::ExitCode};
 
+use crate::core::RobotLayout;
+use crate::user::Keymap;
 use clap::Args;
-use tabletop::core::RobotLayout;
-use tabletop::user::Keymap;
 use tabletop_gui::{Preferences, keymap_file};
 
 use super::{Failure, Output, WRONG_INPUT, robot_options::describe, terminal::say};

@@ -2,16 +2,17 @@
 
 use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode, thread, time::Instant};
 
+use crate::{
+    Collection, CollectionError,
+    multiplication::{Made, Multiplication, Variation},
+    recorder::{RecordingReader, SessionHeader, read_original},
+    run_episodes,
+};
 use clap::{
     Args,
     builder::{PathBufValueParser, TypedValueParser as _},
 };
 use serde_json::{Value, json};
-use tabletop::{
-    multiplication::{Collection, CollectionError, Made, Multiplication, Variation},
-    recorder::{RecordingReader, read_original},
-    run_episodes,
-};
 
 use super::{
     Failure, Output,
@@ -22,6 +23,7 @@ use super::{
     progress::ProgressLine,
     range::{NumberRange, SEEDS},
     robot_options::robot_of,
+    shard::ShardOption,
     terminal::{say, show_warnings},
 };
 
@@ -66,6 +68,8 @@ pub(super) struct MultiplyArgs {
     light: f32,
     #[command(flatten)]
     hand_cameras: HandCameraOption,
+    #[command(flatten)]
+    shard: ShardOption,
     /// Number of demonstrations made at a time, from 1 to 256 [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
@@ -75,7 +79,10 @@ const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
 const PARTS: NumberRange<f32> = NumberRange::decimal(0.0, 0.5);
 const DISTRACTORS: NumberRange<u32> = NumberRange::whole(0, 50);
 const LENGTHS: NumberRange<f32> = NumberRange::decimal(0.0, 10.0).of("units");
-const JOBS: NumberRange<usize> = NumberRange::whole(1, 256);
+pub(super) const JOBS: NumberRange<usize> = NumberRange::whole(1, 256);
+
+/// The file with what a folder of demonstrations is made of.
+const MANIFEST: &str = "multiply.json";
 
 /// Refuses a folder as a robot's file: it is the recording.
 fn no_folder(file: PathBuf) -> Result<PathBuf, &'static str> {
@@ -131,15 +138,17 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     };
     let multiplication = multiplication.with_hand_pictures(hand_pictures);
     let manifest = args.manifest(&multiplication);
-    let collection = Collection::open(&args.out, &manifest).map_err(refused)?;
+    let collection = Collection::open(&args.out, MANIFEST, &manifest).map_err(refused)?;
     let start = Instant::now();
     let mut missing = Vec::new();
-    for number in 0..args.count {
-        if !collection.holds(number, args.seed).map_err(refused)? {
-            missing.push(number);
+    let mut there = 0;
+    for number in args.shard.share_of(0..args.count) {
+        let is_right = |header: &SessionHeader| multiplication.has_made(number, header);
+        match collection.holds(number, is_right).map_err(refused)? {
+            true => there += 1,
+            false => missing.push(number),
         }
     }
-    let there = args.count - missing.len() as u64;
     let outcome = make_all(args, &multiplication, &collection, &missing);
     let closed = collection.close().map_err(refused);
     let outcome = outcome?;
@@ -149,13 +158,13 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(u8::from(!outcome.given_up.is_empty())))
 }
 
-/// The failure of a folder that takes no demonstrations.
-fn refused(error: CollectionError) -> Failure {
+/// The failure of a folder that takes no recordings.
+pub(super) fn refused(error: CollectionError) -> Failure {
     match error {
         CollectionError::Io { .. } | CollectionError::InUse(_) => Failure::run(error),
         CollectionError::OtherManifest(_)
         | CollectionError::SomethingElse(_)
-        | CollectionError::NoDemonstration(_) => Failure::input(error),
+        | CollectionError::NoMember(_) => Failure::input(error),
     }
 }
 

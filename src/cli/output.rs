@@ -5,7 +5,7 @@ use std::{
     path::PathBuf,
 };
 
-use tabletop::storage::Storage;
+use crate::storage::Storage;
 
 use super::{Failure, terminal::printable};
 

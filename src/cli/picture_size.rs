@@ -1,6 +1,6 @@
 //! Sizes of pictures as options.
 
-use tabletop::core::{HeadCamera, Picture};
+use crate::core::{HeadCamera, Picture};
 
 use super::range::NumberRange;
 

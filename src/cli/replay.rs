@@ -2,9 +2,7 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use bevy::{math::Vec3, prelude::*};
-use clap::Args;
-use tabletop::{
+use crate::{
     core::{HeadCamera, SimTick, StepApp as _, TICKS_PER_SECOND},
     geometry::Pose,
     headless_app_with,
@@ -12,6 +10,8 @@ use tabletop::{
     replay::{Player, Replay, ReplayError},
     script::ScriptPlugin,
 };
+use bevy::{math::Vec3, prelude::*};
+use clap::Args;
 
 use super::{
     Failure,

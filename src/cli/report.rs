@@ -2,11 +2,11 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use clap::Args;
-use tabletop::{
+use crate::{
     recorder::RecordingReader,
     report::{Chapter, OverviewRow, overview_page, recording_page},
 };
+use clap::Args;
 
 use super::{
     Failure, Output, cut_off::say_if_cut_off, progress::ProgressLine, recordings::recordings_in,

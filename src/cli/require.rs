@@ -2,8 +2,8 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
+use crate::task::{Furniture, Requirements, Role, Task};
 use clap::Args;
-use tabletop::task::{Furniture, Requirements, Role, Task};
 
 use super::{
     Failure,

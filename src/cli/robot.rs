@@ -2,15 +2,15 @@
 
 use std::{collections::BTreeMap, fmt, io::BufRead as _, path::PathBuf, process::ExitCode};
 
-use bevy::math::{DAffine3, DQuat, DVec3};
-use clap::{Args, Subcommand};
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use serde_json::{Value, json};
-use tabletop::{
+use crate::{
     core::{JointName, JointRole, LimbLayout, LimbName, RobotLayout, Table},
     geometry::UNITS_PER_METER,
     robot::Description,
 };
+use bevy::math::{DAffine3, DQuat, DVec3};
+use clap::{Args, Subcommand};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde_json::{Value, json};
 use tabletop_kinematics::{ArmChain, ModelError, RobotModel, Target, Unreachable};
 
 use super::{Failure, Output, WRONG_INPUT, robot_options::describe};

@@ -2,15 +2,13 @@
 
 use std::{
     collections::BTreeSet,
+    ops::Range,
     path::{Path, PathBuf},
     process::ExitCode,
     time::Instant,
 };
 
-use bevy::{app::PluginGroupBuilder, prelude::*};
-use clap::Args;
-use serde_json::json;
-use tabletop::{
+use crate::{
     TabletopSimPlugins,
     assembly::{IdAllocator, assemble},
     core::{
@@ -26,6 +24,9 @@ use tabletop::{
     task::Furniture,
     task_files::save_task,
 };
+use bevy::{app::PluginGroupBuilder, prelude::*};
+use clap::Args;
+use serde_json::json;
 use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
 use super::{
@@ -35,10 +36,13 @@ use super::{
     explain::read,
     faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
+    multiply::JOBS,
     range::SEEDS,
     recorded::{self, say_moved_aside},
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
+    seeds::{self, seed_range},
+    shard::ShardOption,
     terminal::{say, show_warnings},
 };
 
@@ -48,18 +52,19 @@ pub(super) const DEFAULT_SETUP: &str = "tablesetup/default.xml";
 #[derive(Args)]
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
 #[command(mut_group("HandCameraOption", |options| options.requires("record")))]
+#[command(mut_group("ShardOption", |options| options.requires("seeds")))]
 pub(super) struct RunArgs {
     /// The scenario to perform (docs/scenarios.md); exit code 1 if one of its steps fails
     #[arg(value_name = "SCENARIO")]
-    scenario: Option<PathBuf>,
+    pub scenario: Option<PathBuf>,
     /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
     #[arg(long, value_name = "FILE")]
-    setup: Option<PathBuf>,
+    pub setup: Option<PathBuf>,
     #[command(flatten)]
-    allowed: AllowedPaths,
+    pub allowed: AllowedPaths,
     /// Number of seconds to simulate, from 0 to 31622400 [default: 10]; a scenario fails if it takes longer [default: 600]
     #[arg(long, value_name = "S", value_parser = SECONDS, allow_negative_numbers = true)]
-    seconds: Option<f64>,
+    pub seconds: Option<f64>,
     /// The seed of a scenario's random places, from 0 to 18446744073709551615 [default: 0]
     #[arg(
         long,
@@ -71,11 +76,25 @@ pub(super) struct RunArgs {
         hide_default_value = true
     )]
     seed: u64,
-    /// The folder for the scenario's recording; without it, nothing is recorded
-    #[arg(long, value_name = "DIR", requires = "scenario")]
-    record: Option<PathBuf>,
+    /// Perform it once with each seed from A to B - 1, on all cores
+    #[arg(
+        long,
+        value_name = "A..B",
+        value_parser = seed_range,
+        requires = "scenario",
+        conflicts_with_all = ["seed", "script", "final_state", "final_robot", "save"]
+    )]
+    seeds: Option<Range<u64>>,
     #[command(flatten)]
-    hand_cameras: HandCameraOption,
+    pub shard: ShardOption,
+    /// Number of seeds at a time, from 1 to 256 [default: the number of cores]
+    #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true, requires = "seeds")]
+    pub jobs: Option<usize>,
+    /// The folder for the scenario's recording, or with --seeds for a folder of each seed, of which those that are whole stay; without it, nothing is recorded
+    #[arg(long, value_name = "DIR", requires = "scenario")]
+    pub record: Option<PathBuf>,
+    #[command(flatten)]
+    pub hand_cameras: HandCameraOption,
     /// Write the final pose of every object as CSV (`id,x,y,z,rx,ry,rz`); `-` for standard output
     #[arg(long, value_name = "FILE|-")]
     final_state: Option<Output>,
@@ -96,10 +115,10 @@ pub(super) struct RunArgs {
     #[command(flatten)]
     engine: EngineOptions,
     #[command(flatten)]
-    robot: RobotOptions,
+    pub robot: RobotOptions,
     /// Leave out the last line, which sums up the run
     #[arg(long, short)]
-    quiet: bool,
+    pub quiet: bool,
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
@@ -107,6 +126,9 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
     args.check_ends()?;
     let seconds = args.seconds;
     match &args.scenario {
+        Some(scenario) if let Some(seeds) = &args.seeds => {
+            seeds::perform(scenario, seeds.clone(), args)
+        }
         Some(scenario) => perform(scenario, args),
         None => {
             let setup = args.setup.as_deref();
@@ -183,7 +205,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     }
 
     let hand_pictures = args.hand_cameras.of(&robot)?;
-    let plugins = recording(plugins(args, robot)?, args, hand_pictures);
+    let plugins = args.plugins(robot, args.record.as_deref(), args.seed, hand_pictures)?;
     let mut app = headless_app_with(plugins);
     let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program))
@@ -277,34 +299,37 @@ fn plugins(args: &RunArgs, robot: RobotPlugin) -> Result<PluginGroupBuilder, Fai
         .set(ScriptPlugin { settings }))
 }
 
-/// The same with a recorder, if one is asked for.
-fn recording(
-    plugins: PluginGroupBuilder,
-    args: &RunArgs,
-    hand_pictures: HandPictures,
-) -> PluginGroupBuilder {
-    let Some(folder) = args.record.clone() else {
-        return plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin);
-    };
-    let mut header = serde_json::Map::new();
-    let scenario = args.scenario.as_deref().map(true_path);
-    let text = |path: PathBuf| json!(path.to_string_lossy());
-    header.insert("scenario".into(), json!(scenario.map(text)));
-    if let Some(setup) = &args.setup {
-        header.insert("setup".into(), text(true_path(setup)));
-    }
-    header.insert("seed".into(), json!(args.seed));
-    plugins.set(RecorderPlugin {
-        folder,
-        header,
-        hand_pictures,
-        ..default()
-    })
-}
-
 impl RunArgs {
+    /// The simulator with this robot and engine, and with a recorder if there is a folder for it.
+    pub fn plugins(
+        &self,
+        robot: RobotPlugin,
+        folder: Option<&Path>,
+        seed: u64,
+        hand_pictures: HandPictures,
+    ) -> Result<PluginGroupBuilder, Failure> {
+        let plugins = plugins(self, robot)?;
+        let Some(folder) = folder else {
+            return Ok(plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin));
+        };
+        let mut header = serde_json::Map::new();
+        let scenario = self.scenario.as_deref().map(true_path);
+        let text = |path: PathBuf| json!(path.to_string_lossy());
+        header.insert("scenario".into(), json!(scenario.map(text)));
+        if let Some(setup) = &self.setup {
+            header.insert("setup".into(), text(true_path(setup)));
+        }
+        header.insert("seed".into(), json!(seed));
+        Ok(plugins.set(RecorderPlugin {
+            folder: folder.to_owned(),
+            header,
+            hand_pictures,
+            ..default()
+        }))
+    }
+
     /// The scene of a task file, which may include files in the allowed folders, or all its faults.
-    fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
+    pub fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
         read_faultless_task(file, &self.allowed.folders)
     }
 
@@ -399,7 +424,7 @@ fn write_final_state(app: &App, output: &Output) -> Result<(), Failure> {
 mod tests {
     use std::fs;
 
-    use tabletop::{core::ObjectIndex, storage::TemporaryFolder};
+    use crate::{core::ObjectIndex, storage::TemporaryFolder};
 
     use super::*;
 
@@ -407,7 +432,7 @@ mod tests {
     fn a_task_file_is_read_once_before_the_first_tick() {
         let folder = TemporaryFolder::new("tabletop-run-once").unwrap();
         let setup = folder.path().join("setup.xml");
-        let text = tabletop::shipped::read_text(Path::new(DEFAULT_SETUP)).unwrap();
+        let text = crate::shipped::read_text(Path::new(DEFAULT_SETUP)).unwrap();
         fs::write(&setup, text).unwrap();
         let (scene, _) = scene_of(&setup, &[]).map_err(|_| "it has faults").unwrap();
         fs::remove_file(&setup).unwrap();

@@ -1,10 +1,10 @@
 //! The script beside a simulation without a window.
 
-use bevy::{ecs::message::MessageCursor, prelude::*};
-use tabletop::{
+use crate::{
     core::{ScriptCommand, ScriptEvent, StepApp as _},
     script::{ScriptSettings, shut_down},
 };
+use bevy::{ecs::message::MessageCursor, prelude::*};
 
 use super::{
     Failure,

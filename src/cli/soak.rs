@@ -2,8 +2,8 @@
 
 use std::{fs, path::Path, process::ExitCode, time::Instant};
 
+use crate::{core::TICKS_PER_SECOND, run_episodes, soak::Round, storage::TemporaryFolder};
 use clap::Args;
-use tabletop::{core::TICKS_PER_SECOND, run_episodes, soak::Round, storage::TemporaryFolder};
 
 use super::{
     Failure,

@@ -2,11 +2,11 @@
 
 use std::{path::PathBuf, process::ExitCode};
 
-use clap::Args;
-use tabletop::{
+use crate::{
     film::{CameraPlace, Film, FilmCamera, FilmError, FilmFormat, FilmPace},
     replay::Replay,
 };
+use clap::Args;
 
 use super::{
     Failure, Output,

@@ -5,8 +5,8 @@ use std::{
     process::ExitCode,
 };
 
+use crate::{replay::Replay, script::ScriptSettings, shipped::task_reader};
 use clap::Args;
-use tabletop::{replay::Replay, script::ScriptSettings, shipped::task_reader};
 
 use super::{
     Failure, Output, WRONG_INPUT,
@@ -77,7 +77,7 @@ impl WindowArgs {
 
 #[cfg(feature = "window")]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
-    use tabletop::window::{self, ScreenshotAt, Show, WindowOptions};
+    use crate::window::{self, ScreenshotAt, Show, WindowOptions};
 
     let result = args.read_files()?;
     let mut display = args.display.options();
@@ -119,7 +119,7 @@ pub(super) fn play(
     scripts: ScriptSettings,
     allowed: Vec<PathBuf>,
 ) -> Result<ExitCode, Failure> {
-    use tabletop::{
+    use crate::{
         recorder::HandPictures,
         robot::RobotPlugin,
         window::{self, DisplayOptions, Show, WindowOptions},

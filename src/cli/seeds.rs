@@ -1,0 +1,274 @@
+//! `tabletop run SCENARIO --seeds A..B`: a scenario, once with each seed.
+
+use std::{fmt::Write as _, ops::Range, path::Path, process::ExitCode, thread, time::Instant};
+
+use bevy::prelude::*;
+use serde_json::json;
+use tabletop_core::{RobotCommand, RobotLayout, SimTick, TICKS_PER_SECOND, WriteCommand as _};
+use tabletop_scenario::{Outcome, Program, Scenario, ScenarioRun};
+
+use super::{
+    Failure, Output, duration::ticks, multiply::refused, progress::ProgressLine, recorded,
+    run::RunArgs, terminal::say,
+};
+use crate::{
+    Collection,
+    core::{RecordingFact, SimFact, StepApp as _},
+    headless_app_with,
+    recorder::{HandPictures, SessionHeader},
+    robot::RobotPlugin,
+    run_episodes,
+    shipped::{read_scenario, read_text, true_path},
+};
+
+/// The file with what a folder of recordings is made of.
+const MANIFEST: &str = "seeds.json";
+
+/// The most seeds of a command.
+const MOST_SEEDS: u64 = 1_000_000;
+
+/// Reads the seeds from one up to but without another.
+pub(super) fn seed_range(text: &str) -> Result<Range<u64>, String> {
+    let expected = || format!("expected A..B, such as 0..1000, with at most {MOST_SEEDS} seeds");
+    let (first, end) = text.split_once("..").ok_or_else(expected)?;
+    let read = |text: &str| text.parse::<u64>().map_err(|_| expected());
+    let (first, end) = (read(first)?, read(end)?);
+    match first < end && end - first <= MOST_SEEDS {
+        true => Ok(first..end),
+        false => Err(expected()),
+    }
+}
+
+/// The result with a seed.
+struct Performed {
+    /// The step that failed, and why.
+    failure: Option<String>,
+    simulated: u64,
+}
+
+/// Performs a scenario with each seed. Exit code 1 if a step failed with one of them.
+pub(super) fn perform(path: &Path, seeds: Range<u64>, args: &RunArgs) -> Result<ExitCode, Failure> {
+    let mut scenario = read_scenario(path).map_err(Failure::input)?;
+    scenario.allowed.clone_from(&args.allowed.folders);
+    if let Some(setup) = &args.setup {
+        scenario.begin_with(&true_path(setup));
+    }
+    let robot = args.robot.plugin()?;
+    let layout = robot.description.as_ref().map(|robot| &robot.layout);
+    let checked = scenario.check_for(layout.unwrap_or(RobotLayout::baxter()));
+    checked.map_err(Failure::input)?;
+    let work = Work {
+        scenario: &scenario,
+        args,
+        hand_pictures: args.hand_cameras.of(&robot)?,
+        robot,
+    };
+    let collection = match &args.record {
+        Some(folder) => {
+            Some(Collection::open(folder, MANIFEST, &work.manifest()?).map_err(refused)?)
+        }
+        None => None,
+    };
+    let start = Instant::now();
+    let mut missing = Vec::new();
+    let mut there = 0;
+    for seed in args.shard.share_of(seeds) {
+        let is_right = |header: &SessionHeader| header.settings.get("seed") == Some(&json!(seed));
+        let holds = collection.as_ref().map(|it| it.holds(seed, is_right));
+        match holds.transpose().map_err(refused)? {
+            Some(true) => there += 1,
+            Some(false) | None => missing.push(seed),
+        }
+    }
+    let tally = perform_all(&work, collection.as_ref(), &missing);
+    let closed = collection.map_or(Ok(()), |it| it.close().map_err(refused));
+    let tally = tally?;
+    closed?;
+    if !args.quiet {
+        let real = start.elapsed().as_secs_f64();
+        Output::Stdout.write(tally.summary(there, real).as_bytes())?;
+    }
+    Ok(ExitCode::from(u8::from(tally.failed > 0)))
+}
+
+#[derive(Default)]
+struct Tally {
+    done: u64,
+    failed: u64,
+    simulated: u64,
+}
+
+impl Tally {
+    fn summary(&self, there: u64, real: f64) -> String {
+        let mut text = String::new();
+        if there > 0 {
+            let _infallible = writeln!(text, "{there} were there");
+        }
+        let all = self.done + self.failed;
+        let simulated = self.simulated as f64 / f64::from(TICKS_PER_SECOND);
+        let _infallible = writeln!(
+            text,
+            "{} of {all} done; {simulated:.0} s simulated in {real:.1} s, {:.1} seeds a second",
+            self.done,
+            all as f64 / real.max(1e-3)
+        );
+        text
+    }
+}
+
+/// Performs it with these seeds, on all cores. The first error that is not a step's ends it.
+fn perform_all(
+    work: &Work,
+    collection: Option<&Collection>,
+    seeds: &[u64],
+) -> Result<Tally, Failure> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let jobs = work.args.jobs.unwrap_or(cores).clamp(1, seeds.len().max(1));
+    let mut progress = ProgressLine::new(seeds.len() as u64, "");
+    let mut tally = Tally::default();
+    let perform = |seed| work.perform(seed, collection);
+    let result = run_episodes(seeds.iter().copied(), jobs, perform, |seed, performed| {
+        tally.simulated += performed.simulated;
+        match performed.failure {
+            None => tally.done += 1,
+            Some(failure) => {
+                tally.failed += 1;
+                progress.end();
+                say(format_args!("tabletop: seed {seed}: {failure}"));
+                say(format_args!("tabletop: again: {}", work.again(seed)));
+            }
+        }
+        progress.reach(tally.done + tally.failed, "");
+        Ok(())
+    });
+    progress.end();
+    result.map(|()| tally)
+}
+
+/// What is done with each seed.
+struct Work<'a> {
+    scenario: &'a Scenario,
+    args: &'a RunArgs,
+    robot: RobotPlugin,
+    hand_pictures: HandPictures,
+}
+
+impl Work<'_> {
+    /// Performs it with a seed. A recording that is whole appears in the collection.
+    fn perform(&self, seed: u64, collection: Option<&Collection>) -> Result<Performed, Failure> {
+        let read = |file: &Path| self.args.read_faultless(file);
+        let program = Program::new(self.scenario, read, seed);
+        let mut program = match program {
+            Ok(program) => program,
+            // There is no room for this seed's places.
+            Err(error) => {
+                return Ok(Performed {
+                    failure: Some(error.to_string()),
+                    simulated: 0,
+                });
+            }
+        };
+        if let Some(seconds) = self.args.seconds {
+            program.limit = ticks(seconds);
+        }
+        let folder = collection.map(|collection| collection.part(seed));
+        let plugins = self.args.plugins(
+            self.robot.clone(),
+            folder.as_deref(),
+            seed,
+            self.hand_pictures.clone(),
+        )?;
+        let mut app = headless_app_with(plugins);
+        app.insert_resource(ScenarioRun::new(program));
+        if self.args.robot.show_robot {
+            app.world_mut().write_command(RobotCommand::Show(true));
+        }
+        let failure = loop {
+            app.step(1);
+            match app.world().resource::<ScenarioRun>().outcome() {
+                Outcome::Running => {}
+                Outcome::Done => break None,
+                Outcome::Failed(error) => break Some(error.to_string()),
+            }
+        };
+        let failure = failure.filter(|_| !recording_failed(app.world()));
+        let report = recorded::finish(&mut app)?;
+        if let (Some(collection), None) = (collection, &failure)
+            && report.started > 0
+        {
+            collection.keep(seed).map_err(refused)?;
+        }
+        Ok(Performed {
+            failure,
+            simulated: app.world().resource::<SimTick>().0,
+        })
+    }
+
+    /// The command that does it again with a seed.
+    fn again(&self, seed: u64) -> String {
+        let args = self.args;
+        let path = |path: &Path| path.display().to_string();
+        let mut words = vec!["tabletop".into(), "run".into()];
+        words.extend(args.scenario.as_deref().map(path));
+        words.extend(["--seed".into(), seed.to_string()]);
+        let (robot, is_dynamic) = args.robot.name();
+        let seconds = args.seconds.map(|seconds| seconds.to_string());
+        for (option, value) in [
+            ("--setup", args.setup.as_deref().map(path)),
+            ("--robot", robot.map(path)),
+            ("--seconds", seconds),
+        ] {
+            words.extend(value.into_iter().flat_map(|value| [option.into(), value]));
+        }
+        for folder in &args.allowed.folders {
+            words.extend(["--allow-path".into(), path(folder)]);
+        }
+        for (option, is_given) in [
+            ("--dynamic", is_dynamic),
+            ("--show-robot", args.robot.show_robot),
+        ] {
+            words.extend(is_given.then(|| option.into()));
+        }
+        let quoted = words
+            .iter()
+            .map(|word| match word.contains([' ', '\'', '"', '$', '*']) {
+                true => format!("'{}'", word.replace('\'', r"'\''")),
+                false => word.clone(),
+            });
+        quoted.collect::<Vec<_>>().join(" ")
+    }
+
+    /// All that decides the recordings, but not the seeds.
+    fn manifest(&self) -> Result<serde_json::Value, Failure> {
+        let text = read_text(&self.scenario.path).map_err(Failure::input)?;
+        Ok(json!({
+            "scenario": text,
+            "setup": self.args.setup,
+            "program": env!("CARGO_PKG_VERSION"),
+            "robot": self.args.robot.name(),
+            "show_robot": self.args.robot.show_robot,
+            "hand_cameras": self.args.hand_cameras.hand_cameras,
+        }))
+    }
+}
+
+/// True if the recording could not be written in the last ticks, which ends the command.
+fn recording_failed(world: &World) -> bool {
+    let facts = world.resource::<Messages<SimFact>>();
+    facts
+        .iter_current_update_messages()
+        .any(|fact| matches!(fact, SimFact::Recording(RecordingFact::Failed { .. })))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seeds_are_a_range_without_its_end() {
+        assert_eq!(seed_range("3..5"), Ok(3..5));
+        for text in ["5..5", "5..3", "5", "a..b", "0..2000000", "-1..3", ".."] {
+            assert!(seed_range(text).is_err(), "{text}");
+        }
+    }
+}
