@@ -1,0 +1,65 @@
+"""Rolls out a policy over the nodes of a Ray cluster: each actor steps a vector of environments.
+
+    python examples/cluster/ray_rollouts.py --episodes 1000 --actors 4
+
+Every episode has its own seed, so that it is the same on whichever node it runs, and its result is kept once, however often a
+node dies. Without a cluster, Ray starts one on this machine.
+"""
+
+import argparse
+
+import numpy as np
+import ray
+
+import tabletop
+
+
+@ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=-1)
+class Rollouts:
+    """A vector of environments on a node."""
+
+    def __init__(self, name: str, num_envs: int):
+        self.many = tabletop.make_vec(name, num_envs, threads=1, autoreset_mode="disabled", max_steps=50)
+
+    def run(self, seeds: list[int]) -> dict[int, float]:
+        """The return of an episode of each seed, of random actions."""
+        count = self.many.num_envs
+        padded = seeds + [0] * (count - len(seeds))
+        self.many.reset(seed=padded)
+        random = [np.random.default_rng(seed) for seed in padded]
+        returns, going = np.zeros(count), np.ones(count, bool)
+        while going.any():
+            actions = np.stack([it.uniform(-1, 1, self.many.single_action_space.shape) for it in random])
+            _, reward, done, cut, _ = self.many.step(actions)
+            returns += np.where(going, reward, 0)
+            going &= ~(done | cut)
+        return {seed: float(returns[row]) for row, seed in enumerate(seeds)}
+
+
+def rollouts(episodes: int, actors: int, num_envs: int, name: str) -> dict[int, float]:
+    """The return of each episode, by its seed."""
+    workers = ray.util.ActorPool([Rollouts.remote(name, num_envs) for _ in range(actors)])
+    seeds = [list(range(first, min(first + num_envs, episodes))) for first in range(0, episodes, num_envs)]
+    returns: dict[int, float] = {}
+    for part in workers.map_unordered(lambda worker, some: worker.run.remote(some), seeds):
+        twice = returns.keys() & part.keys()
+        assert not twice, f"episodes came twice: {sorted(twice)}"
+        returns |= part
+    return returns
+
+
+def main() -> None:
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--name", default="StackThree")
+    arguments.add_argument("--episodes", type=int, default=1000)
+    arguments.add_argument("--actors", type=int, default=2)
+    arguments.add_argument("--num-envs", type=int, default=8)
+    arguments = arguments.parse_args()
+    ray.init(ignore_reinit_error=True)
+    returns = rollouts(arguments.episodes, arguments.actors, arguments.num_envs, arguments.name)
+    values = np.array(list(returns.values()))
+    print(f"{len(returns)} episodes, return {values.mean():.3f} ± {values.std():.3f}")
+
+
+if __name__ == "__main__":
+    main()
