@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use tabletop::{
     core::Random,
-    environment::{Environment, EnvironmentOptions, EnvironmentTask, ObservationSpace},
+    environment::{EnvironmentOptions, EnvironmentTask, ObservationSpace, TaskEnvironment},
 };
 
 const TURNS: usize = 40;
@@ -25,7 +25,7 @@ fn main() {
         ..EnvironmentOptions::default()
     };
     let make = |scatters| {
-        let mut environment = Environment::new(task(scatters), &options).unwrap();
+        let mut environment = TaskEnvironment::new(task(scatters), &options).unwrap();
         environment.reset(Some(0)).unwrap();
         environment
     };
@@ -33,7 +33,7 @@ fn main() {
     let mut moving = make(false);
     let mut still = make(false);
     let mut scattered = make(true);
-    let mut act = |environment: &mut Environment| {
+    let mut act = |environment: &mut TaskEnvironment| {
         let action: Vec<_> = (0..environment.action_len())
             .map(|_| random.between((-0.3, 0.3)))
             .collect();

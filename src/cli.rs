@@ -36,7 +36,9 @@ mod require;
 mod robot;
 mod robot_options;
 mod run;
+mod run_arguments;
 mod script;
+mod seed_range;
 mod seeds;
 mod shard;
 mod soak;
@@ -70,7 +72,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Simulate a task file or a scenario without a window, as fast as possible
-    Run(run::RunArgs),
+    Run(run_arguments::RunArgs),
     /// Run a recording again: watch it, verify it, or make its pictures anew
     Replay(replay::ReplayArgs),
     /// Print the task that a recording shows, step by step

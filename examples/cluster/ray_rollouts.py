@@ -7,6 +7,7 @@ node dies. Without a cluster, Ray starts one on this machine.
 """
 
 import argparse
+from collections.abc import Callable
 
 import numpy as np
 import ray
@@ -14,7 +15,7 @@ import ray
 import tabletop
 
 
-@ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=-1)
+@ray.remote(num_cpus=1)
 class Rollouts:
     """A vector of environments on a node."""
 
@@ -36,15 +37,33 @@ class Rollouts:
         return {seed: float(returns[row]) for row, seed in enumerate(seeds)}
 
 
-def rollouts(episodes: int, actors: int, num_envs: int, name: str) -> dict[int, float]:
-    """The return of each episode, by its seed."""
-    workers = ray.util.ActorPool([Rollouts.remote(name, num_envs) for _ in range(actors)])
-    seeds = [list(range(first, min(first + num_envs, episodes))) for first in range(0, episodes, num_envs)]
+def rollouts(
+    episodes: int, actors: int, num_envs: int, name: str, progress: Callable[[int], None] = lambda done: None
+) -> dict[int, float]:
+    """The return of each episode, by its seed. `progress` is told how many are done."""
+    idle = [Rollouts.remote(name, num_envs) for _ in range(actors)]
+    waiting = [list(range(first, min(first + num_envs, episodes))) for first in range(0, episodes, num_envs)]
+    running: dict[ray.ObjectRef, tuple[ray.actor.ActorHandle, list[int]]] = {}
     returns: dict[int, float] = {}
-    for part in workers.map_unordered(lambda worker, some: worker.run.remote(some), seeds):
+    while waiting or running:
+        while waiting and idle:
+            worker, seeds = idle.pop(), waiting.pop(0)
+            running[worker.run.remote(seeds)] = worker, seeds
+        (ready, *_), _ = ray.wait(list(running))
+        worker, seeds = running.pop(ready)
+        try:
+            part = ray.get(ready)
+        except ray.exceptions.RayActorError:
+            # Its node is gone: the others do its work.
+            waiting.append(seeds)
+            if not running and not idle:
+                idle.append(Rollouts.remote(name, num_envs))
+            continue
+        idle.append(worker)
         twice = returns.keys() & part.keys()
         assert not twice, f"episodes came twice: {sorted(twice)}"
         returns |= part
+        progress(len(returns))
     return returns
 
 

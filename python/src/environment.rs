@@ -12,7 +12,7 @@ use crate::{
 
 /// An environment; `tabletop.TabletopEnv` is its face in Gymnasium.
 #[pyclass(module = "tabletop._tabletop")]
-pub struct Environment(environment::Environment);
+pub struct Environment(environment::TaskEnvironment);
 
 /// An environment at a moment.
 #[pyclass(module = "tabletop._tabletop", frozen)]
@@ -23,7 +23,7 @@ impl Environment {
     #[new]
     fn new(py: Python<'_>, options: Options) -> PyResult<Self> {
         let (task, options) = options.read()?;
-        let made = py.detach(|| environment::Environment::new(task, &options));
+        let made = py.detach(|| environment::TaskEnvironment::new(task, &options));
         made.map(Self).map_err(raise)
     }
 

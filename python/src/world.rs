@@ -10,7 +10,7 @@ use tabletop::{
         Drive, JointName, LimbId, LimbName, ObjectSpec, Robot, RobotCommand, RobotLayout,
         WriteCommand as _,
     },
-    environment::{Beginning, Moment, TableWorld, WorldOptions},
+    environment::{TableWorld, WorldMoment, WorldOptions, WorldOrigin},
     geometry::Pose,
     robot::{end_effector_at, reach},
 };
@@ -26,7 +26,7 @@ pub struct World(TableWorld);
 
 /// A world at a moment.
 #[pyclass(module = "tabletop._tabletop", frozen)]
-pub struct Snapshot(Moment);
+pub struct Snapshot(WorldMoment);
 
 /// A pose: location, and rotation as x, y, z, w.
 type PoseNumbers = ([f32; 3], [f32; 4]);
@@ -59,10 +59,10 @@ impl World {
         allow_paths: Vec<PathBuf>,
     ) -> PyResult<Self> {
         let beginning = match (setup, scenario, recording) {
-            (None, None, None) => Beginning::Empty,
-            (Some(setup), None, None) => Beginning::Setup(setup),
-            (None, Some(scenario), None) => Beginning::Scenario(scenario),
-            (None, None, Some(recording)) => Beginning::Recording(recording),
+            (None, None, None) => WorldOrigin::Empty,
+            (Some(setup), None, None) => WorldOrigin::Setup(setup),
+            (None, Some(scenario), None) => WorldOrigin::Scenario(scenario),
+            (None, None, Some(recording)) => WorldOrigin::Recording(recording),
             _ => return Err(refuse("expected one of setup, scenario and recording")),
         };
         let options = WorldOptions {

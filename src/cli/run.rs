@@ -2,7 +2,6 @@
 
 use std::{
     collections::BTreeSet,
-    ops::Range,
     path::{Path, PathBuf},
     process::ExitCode,
     time::Instant,
@@ -16,110 +15,28 @@ use crate::{
         StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
-    recorder::{HandPictures, RecorderPlugin, UnrecordedPlugin},
-    robot::RobotPlugin,
-    script::{ScriptPlugin, shut_down},
+    script::shut_down,
     shipped::{read_scenario, task_reader, true_path},
     shown_task::shown_task,
     task::Furniture,
     task_files::save_task,
 };
-use bevy::{app::PluginGroupBuilder, prelude::*};
-use clap::Args;
-use serde_json::json;
+use bevy::prelude::*;
 use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
 use super::{
     Failure, Output, WRONG_INPUT,
-    allowed_paths::AllowedPaths,
-    duration::{SECONDS, pass, ticks},
+    duration::{pass, ticks},
     explain::read,
-    faultless::read_faultless_task,
-    hand_cameras::HandCameraOption,
-    multiply::JOBS,
-    range::SEEDS,
     recorded::{self, say_moved_aside},
-    robot_options::{EngineOptions, RobotOptions, script},
-    script::{Script, headless_settings},
-    seeds::{self, seed_range},
-    shard::ShardOption,
+    run_arguments::RunArgs,
+    script::Script,
+    seeds,
     terminal::{say, show_warnings},
 };
 
 /// The task file that is loaded unless one is named.
 pub(super) const DEFAULT_SETUP: &str = "tablesetup/default.xml";
-
-#[derive(Args)]
-#[command(mut_group("EngineOptions", |options| options.requires("script")))]
-#[command(mut_group("HandCameraOption", |options| options.requires("record")))]
-#[command(mut_group("ShardOption", |options| options.requires("seeds")))]
-pub(super) struct RunArgs {
-    /// The scenario to perform (docs/scenarios.md); exit code 1 if one of its steps fails
-    #[arg(value_name = "SCENARIO")]
-    pub scenario: Option<PathBuf>,
-    /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
-    #[arg(long, value_name = "FILE")]
-    pub setup: Option<PathBuf>,
-    #[command(flatten)]
-    pub allowed: AllowedPaths,
-    /// Number of seconds to simulate, from 0 to 31622400 [default: 10]; a scenario fails if it takes longer [default: 600]
-    #[arg(long, value_name = "S", value_parser = SECONDS, allow_negative_numbers = true)]
-    pub seconds: Option<f64>,
-    /// The seed of a scenario's random places, from 0 to 18446744073709551615 [default: 0]
-    #[arg(
-        long,
-        value_name = "N",
-        value_parser = SEEDS,
-        allow_negative_numbers = true,
-        default_value = "0",
-        requires = "scenario",
-        hide_default_value = true
-    )]
-    seed: u64,
-    /// Perform it once with each seed from A to B - 1, on all cores
-    #[arg(
-        long,
-        value_name = "A..B",
-        value_parser = seed_range,
-        requires = "scenario",
-        conflicts_with_all = ["seed", "script", "final_state", "final_robot", "save"]
-    )]
-    seeds: Option<Range<u64>>,
-    #[command(flatten)]
-    pub shard: ShardOption,
-    /// Number of seeds at a time, from 1 to 256 [default: the number of cores]
-    #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true, requires = "seeds")]
-    pub jobs: Option<usize>,
-    /// The folder for the scenario's recording, or with --seeds for a folder of each seed, of which those that are whole stay; without it, nothing is recorded
-    #[arg(long, value_name = "DIR", requires = "scenario")]
-    pub record: Option<PathBuf>,
-    #[command(flatten)]
-    pub hand_cameras: HandCameraOption,
-    /// Write the final pose of every object as CSV (`id,x,y,z,rx,ry,rz`); `-` for standard output
-    #[arg(long, value_name = "FILE|-")]
-    final_state: Option<Output>,
-    /// Write the robot's final state as JSON; `-` for standard output
-    #[arg(long, value_name = "FILE|-")]
-    final_robot: Option<Output>,
-    /// Save the final state as a new task file
-    #[arg(long, value_name = "FILE.xml")]
-    save: Option<PathBuf>,
-    /// The script that drives the robot: `matlab` (the scripts that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
-    /// `matlab:FOLDER#reach` (reachInit.m and reachCallback.m), `python:FILE`, or `other:FILE` for the driver that `--engine` names.
-    /// The run ends with the script if there is no scenario, or one that waits for nothing
-    #[arg(long, value_name = "LANGUAGE[:PATH][#PAIR]", value_parser = script)]
-    script: Option<String>,
-    /// The recording whose task the script gets as `sensor.task`
-    #[arg(long, value_name = "DIR", requires = "script")]
-    task: Option<PathBuf>,
-    #[command(flatten)]
-    engine: EngineOptions,
-    #[command(flatten)]
-    pub robot: RobotOptions,
-    /// Leave out the last line, which sums up the run
-    #[arg(long, short)]
-    pub quiet: bool,
-}
 
 pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
     show_warnings();
@@ -133,7 +50,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
-            let plugins = plugins(args, args.robot.plugin()?)?;
+            let plugins = args.simulator(args.robot.plugin()?)?;
             let (scene, result) = scene_of(setup, &args.allowed.folders)?;
             let mut app = headless_app_with(plugins);
             app.add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
@@ -290,49 +207,7 @@ fn stops_the_robot(fact: &SimFact) -> bool {
     }
 }
 
-/// The simulator with this robot, and the engine that was asked for.
-fn plugins(args: &RunArgs, robot: RobotPlugin) -> Result<PluginGroupBuilder, Failure> {
-    let settings = headless_settings(&args.engine, args.script.as_deref())?;
-    Ok(TabletopSimPlugins
-        .build()
-        .set(robot)
-        .set(ScriptPlugin { settings }))
-}
-
 impl RunArgs {
-    /// The simulator with this robot and engine, and with a recorder if there is a folder for it.
-    pub fn plugins(
-        &self,
-        robot: RobotPlugin,
-        folder: Option<&Path>,
-        seed: u64,
-        hand_pictures: HandPictures,
-    ) -> Result<PluginGroupBuilder, Failure> {
-        let plugins = plugins(self, robot)?;
-        let Some(folder) = folder else {
-            return Ok(plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin));
-        };
-        let mut header = serde_json::Map::new();
-        let scenario = self.scenario.as_deref().map(true_path);
-        let text = |path: PathBuf| json!(path.to_string_lossy());
-        header.insert("scenario".into(), json!(scenario.map(text)));
-        if let Some(setup) = &self.setup {
-            header.insert("setup".into(), text(true_path(setup)));
-        }
-        header.insert("seed".into(), json!(seed));
-        Ok(plugins.set(RecorderPlugin {
-            folder: folder.to_owned(),
-            header,
-            hand_pictures,
-            ..default()
-        }))
-    }
-
-    /// The scene of a task file, which may include files in the allowed folders, or all its faults.
-    pub fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
-        read_faultless_task(file, &self.allowed.folders)
-    }
-
     /// Gives scripts the task of a recording, with the objects of a scene if there is one.
     fn tell_task(&self, app: &mut App, scene: Option<&SceneSpec>) -> Result<(), Failure> {
         let Some(recording) = &self.task else {

@@ -9,7 +9,7 @@ use tabletop_scenario::{Outcome, Program, Scenario, ScenarioRun};
 
 use super::{
     Failure, Output, duration::ticks, multiply::refused, progress::ProgressLine, recorded,
-    run::RunArgs, terminal::say,
+    run_arguments::RunArgs, terminal::say,
 };
 use crate::{
     Collection,
@@ -23,21 +23,6 @@ use crate::{
 
 /// The file with what a folder of recordings is made of.
 const MANIFEST: &str = "seeds.json";
-
-/// The most seeds of a command.
-const MOST_SEEDS: u64 = 1_000_000;
-
-/// Reads the seeds from one up to but without another.
-pub(super) fn seed_range(text: &str) -> Result<Range<u64>, String> {
-    let expected = || format!("expected A..B, such as 0..1000, with at most {MOST_SEEDS} seeds");
-    let (first, end) = text.split_once("..").ok_or_else(expected)?;
-    let read = |text: &str| text.parse::<u64>().map_err(|_| expected());
-    let (first, end) = (read(first)?, read(end)?);
-    match first < end && end - first <= MOST_SEEDS {
-        true => Ok(first..end),
-        false => Err(expected()),
-    }
-}
 
 /// The result with a seed.
 struct Performed {
@@ -92,13 +77,13 @@ pub(super) fn perform(path: &Path, seeds: Range<u64>, args: &RunArgs) -> Result<
 }
 
 #[derive(Default)]
-struct Tally {
+struct SeedTally {
     done: u64,
     failed: u64,
     simulated: u64,
 }
 
-impl Tally {
+impl SeedTally {
     fn summary(&self, there: u64, real: f64) -> String {
         let mut text = String::new();
         if there > 0 {
@@ -121,11 +106,11 @@ fn perform_all(
     work: &Work,
     collection: Option<&Collection>,
     seeds: &[u64],
-) -> Result<Tally, Failure> {
+) -> Result<SeedTally, Failure> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let jobs = work.args.jobs.unwrap_or(cores).clamp(1, seeds.len().max(1));
     let mut progress = ProgressLine::new(seeds.len() as u64, "");
-    let mut tally = Tally::default();
+    let mut tally = SeedTally::default();
     let perform = |seed| work.perform(seed, collection);
     let result = run_episodes(seeds.iter().copied(), jobs, perform, |seed, performed| {
         tally.simulated += performed.simulated;
@@ -258,17 +243,4 @@ fn recording_failed(world: &World) -> bool {
     facts
         .iter_current_update_messages()
         .any(|fact| matches!(fact, SimFact::Recording(RecordingFact::Failed { .. })))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn seeds_are_a_range_without_its_end() {
-        assert_eq!(seed_range("3..5"), Ok(3..5));
-        for text in ["5..5", "5..3", "5", "a..b", "0..2000000", "-1..3", ".."] {
-            assert!(seed_range(text).is_err(), "{text}");
-        }
-    }
 }

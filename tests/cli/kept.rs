@@ -126,10 +126,10 @@ fn demonstrations_of_other_files_are_not_mixed() {
     let moved = blocks.replacen("(-3,", "(-3.5,", 1);
     assert_ne!(moved, blocks);
     fs::write(setup, moved).unwrap();
-    ends(&multiply, 2, "of another demonstration");
+    ends(&multiply, 2, "of something else");
     fs::write(setup, blocks).unwrap();
     ends(&["require", &demo, "--step", "1", "shape"], 0, "");
-    ends(&multiply, 2, "of another demonstration");
+    ends(&multiply, 2, "of something else");
 }
 
 #[cfg(unix)]
@@ -145,7 +145,7 @@ fn only_whole_demonstrations_of_the_collection_count() {
     made("1", 0, "1 made");
     fs::create_dir(out.join("0001")).unwrap();
     made("2", 0, "1 were there\n1 made");
-    let none = "no whole demonstration of this collection";
+    let none = "no whole recording of this collection";
     std::os::unix::fs::symlink(out.join("0000"), out.join("0002")).unwrap();
     made("3", 2, none);
     fs::remove_file(out.join("0002")).unwrap();

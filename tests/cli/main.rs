@@ -26,6 +26,7 @@ mod require;
 mod robot;
 mod scenarios;
 mod script_options;
+mod seeds;
 mod strange_recordings;
 mod strange_scenes;
 mod support;

@@ -1,6 +1,6 @@
 //! `tabletop multiply`: one demonstration becomes many.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{fs, path::Path};
 
 use tabletop::{
     controller::Sight,
@@ -10,7 +10,7 @@ use tabletop::{
 };
 
 use crate::support::{
-    place, record, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop,
+    files, place, record, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop,
 };
 
 fn multiply(demo: &str, out: &Path, options: &[&str]) -> String {
@@ -19,24 +19,6 @@ fn multiply(demo: &str, out: &Path, options: &[&str]) -> String {
     let reported = stdout(&output) + &stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{reported}");
     reported
-}
-
-/// Every file below a folder, by its path in it.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().display().to_string();
-                found.insert(name, fs::read(path).unwrap());
-            }
-        }
-    }
-    found
 }
 
 fn explained(demo: &Path) -> String {

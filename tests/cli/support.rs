@@ -1,6 +1,7 @@
 //! The program, as a user runs it.
 
 use std::{
+    collections::BTreeMap,
     fs,
     path::{self, Path, PathBuf},
     process::{Command, Output},
@@ -87,4 +88,22 @@ pub fn scenario(name: &str, steps: &str) -> PathBuf {
     let setup = "shipped:tablesetup/default.xml";
     fs::write(&path, format!("(setup: {setup:?}, steps: [\n{steps}\n])")).unwrap();
     path
+}
+
+/// Every file below a folder, by its path in it.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().display().to_string();
+                found.insert(name, fs::read(path).unwrap());
+            }
+        }
+    }
+    found
 }

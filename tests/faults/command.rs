@@ -208,7 +208,7 @@ impl Commands {
             assert!(done.count() >= 1, "{outputs:?}");
             for output in outputs.iter().filter(|output| !output.status.success()) {
                 let said = String::from_utf8_lossy(&output.stderr);
-                let reason = "another program makes demonstrations there";
+                let reason = "another program makes recordings there";
                 assert!(said.contains(reason), "{said}");
             }
             assert_eq!(Tree::of(&folder).first_difference(&expected), None);

@@ -67,14 +67,14 @@ fn driven(layout: &RobotLayout) -> impl Iterator<Item = JointId> {
 
 /// What the actions of an episode have ordered so far.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Orders {
+pub(crate) struct ActionOrders {
     /// The joints that actions move, with their limits.
     joints: Vec<(JointName, [f64; 2])>,
     /// The poses to which end effectors were sent.
     targets: Vec<Pose>,
 }
 
-impl Orders {
+impl ActionOrders {
     /// No orders, to a robot at rest.
     pub fn new(world: &World) -> Self {
         let layout = world.resource::<RobotLayout>();

@@ -14,11 +14,11 @@ use tabletop_scenario::{Check, Judge, Verdict};
 use tabletop_sim::{remember_beginning, reset};
 
 use crate::{
-    action::{ActionSpace, Orders},
+    action::{ActionOrders, ActionSpace},
     error::EnvironmentError,
     observation::{ObservationSpace, StateLayout},
     pick_place::pick_and_place,
-    table_world::{Beginning, Moment, TableWorld, WorldOptions, robot_plugin},
+    table_world::{TableWorld, WorldMoment, WorldOptions, WorldOrigin, robot_plugin},
     task::EnvironmentTask,
 };
 
@@ -98,10 +98,10 @@ pub struct Transition {
 /// An environment. It can be sent to another thread.
 ///
 /// ```
-/// use tabletop_environment::{Environment, EnvironmentOptions, EnvironmentTask};
+/// use tabletop_environment::{TaskEnvironment, EnvironmentOptions, EnvironmentTask};
 ///
 /// let task = EnvironmentTask::of_scenario("scenarios/stack_three.ron".as_ref(), true, &[])?;
-/// let mut environment = Environment::new(task, &EnvironmentOptions::default())?;
+/// let mut environment = TaskEnvironment::new(task, &EnvironmentOptions::default())?;
 /// environment.reset(Some(7))?;
 /// let transition = environment.step(&[0.5; 16])?;
 /// assert!(!transition.is_success);
@@ -110,7 +110,7 @@ pub struct Transition {
 /// assert!((state[0] - 0.0).abs() < 3.2);
 /// # Ok::<_, tabletop_environment::EnvironmentError>(())
 /// ```
-pub struct Environment {
+pub struct TaskEnvironment {
     world: TableWorld,
     task: EnvironmentTask,
     options: EnvironmentOptions,
@@ -118,29 +118,29 @@ pub struct Environment {
     layout: StateLayout,
     action: Vec<f32>,
     random: Random,
-    episode: Episode,
+    episode: EpisodeState,
 }
 
 /// The state of an episode, beside the world.
 #[derive(Clone, Debug, Default)]
-struct Episode {
+struct EpisodeState {
     goal: Vec<Check>,
     judge: Judge,
     verdicts: Vec<Verdict>,
-    orders: Orders,
+    orders: ActionOrders,
     steps: u64,
     /// The distance from the goal, of which the dense reward is the decrease.
     distance: f32,
 }
 
-/// An environment at a moment, to which it can [return](Environment::restore).
+/// An environment at a moment, to which it can [return](TaskEnvironment::restore).
 pub struct EnvironmentMoment {
-    world: Moment,
+    world: WorldMoment,
     random: Random,
-    episode: Episode,
+    episode: EpisodeState,
 }
 
-impl Environment {
+impl TaskEnvironment {
     /// An environment. Its first episode begins with a [reset](Self::reset).
     ///
     /// # Errors
@@ -155,7 +155,7 @@ impl Environment {
             ));
         }
         let mut world = TableWorld::new(&WorldOptions {
-            beginning: Beginning::Empty,
+            beginning: WorldOrigin::Empty,
             robot: options.robot.clone(),
             is_dynamic: options.is_dynamic,
             is_recordable: false,
@@ -190,7 +190,7 @@ impl Environment {
             layout,
             action,
             random: Random::new(0),
-            episode: Episode::default(),
+            episode: EpisodeState::default(),
         })
     }
 
@@ -214,10 +214,10 @@ impl Environment {
         }
         self.world.step(1);
         self.world.take_facts();
-        self.episode = Episode {
+        self.episode = EpisodeState {
             goal: plan.goal,
-            orders: Orders::new(self.world.world()),
-            ..Episode::default()
+            orders: ActionOrders::new(self.world.world()),
+            ..EpisodeState::default()
         };
         self.judge(1)?;
         self.episode.distance = self.distance();

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use tabletop_core::step_world;
 use tabletop_geometry::Bounds;
 
-use crate::table_world::{ObjectState, TableWorld};
+use crate::table_world::{TableObject, TableWorld};
 
 /// Number of ticks of a step that takes nothing.
 const TICKS_OF_NOTHING: u64 = 30;
@@ -37,7 +37,7 @@ pub(crate) fn pick_and_place(world: &mut TableWorld, action: &[f32]) {
     }
 }
 
-fn bounds(object: &ObjectState) -> Bounds {
+fn bounds(object: &TableObject) -> Bounds {
     object.spec.shape.bounds(object.pose)
 }
 
@@ -46,14 +46,14 @@ fn covers(bounds: &Bounds, [x, y]: [f32; 2]) -> bool {
 }
 
 /// The highest object over a place that can be moved.
-fn highest_at(objects: &[ObjectState], at: [f32; 2]) -> Option<&ObjectState> {
+fn highest_at(objects: &[TableObject], at: [f32; 2]) -> Option<&TableObject> {
     let movable = objects.iter().filter(|object| !object.spec.is_fixed());
     let there = movable.filter(|object| covers(&bounds(object), at));
     there.max_by(|one, other| bounds(one).high.z.total_cmp(&bounds(other).high.z))
 }
 
 /// The steps that carry an object to a place.
-fn steps(taken: &ObjectState, objects: &[ObjectState], [x, y]: [f32; 2], turn: f32) -> String {
+fn steps(taken: &TableObject, objects: &[TableObject], [x, y]: [f32; 2], turn: f32) -> String {
     let others = objects
         .iter()
         .filter(|other| other.spec.id != taken.spec.id);

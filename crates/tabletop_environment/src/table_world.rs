@@ -33,7 +33,7 @@ const MOST_FACTS: usize = 100_000;
 
 /// What is on the table at first.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Beginning {
+pub enum WorldOrigin {
     /// Nothing.
     Empty,
     /// The content of a task file.
@@ -48,7 +48,7 @@ pub enum Beginning {
 #[derive(Clone, Debug)]
 pub struct WorldOptions {
     /// What is on the table at first.
-    pub beginning: Beginning,
+    pub beginning: WorldOrigin,
     /// A `robot.ron` or a URDF; `None` for Baxter, or the robot of the recording.
     pub robot: Option<PathBuf>,
     /// Whether the arms are moved by motors with limited torque.
@@ -66,7 +66,7 @@ pub struct WorldOptions {
 impl Default for WorldOptions {
     fn default() -> Self {
         Self {
-            beginning: Beginning::Empty,
+            beginning: WorldOrigin::Empty,
             robot: None,
             is_dynamic: false,
             shows_robot: true,
@@ -80,10 +80,10 @@ impl Default for WorldOptions {
 /// A world of the simulator that a program steps and commands. It can be sent to another thread.
 ///
 /// ```
-/// use tabletop_environment::{Beginning, TableWorld, WorldOptions};
+/// use tabletop_environment::{WorldOrigin, TableWorld, WorldOptions};
 ///
 /// let mut world = TableWorld::new(&WorldOptions {
-///     beginning: Beginning::Setup("tablesetup/default.xml".into()),
+///     beginning: WorldOrigin::Setup("tablesetup/default.xml".into()),
 ///     ..WorldOptions::default()
 /// })?;
 /// world.perform(r#"Grasp("RedBlock"), Glide(to: (-2, 0, 4), seconds: 1), Glide(to: (-2, 0, 3), seconds: 1), Release"#)?;
@@ -106,7 +106,7 @@ pub struct TableWorld {
 
 /// The state of an object.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ObjectState {
+pub struct TableObject {
     /// Its description.
     pub spec: ObjectSpec,
     /// Its pose.
@@ -116,7 +116,7 @@ pub struct ObjectState {
 }
 
 /// A world at a moment, to which it can [return](TableWorld::restore).
-pub struct Moment {
+pub struct WorldMoment {
     world: WorldSnapshot,
     /// The commands that a later recording begins with.
     given: GivenCommands,
@@ -143,10 +143,10 @@ impl TableWorld {
     /// A file cannot be read or has a fault, or a step of the scenario fails.
     pub fn new(options: &WorldOptions) -> Result<Self, EnvironmentError> {
         let replay = match &options.beginning {
-            Beginning::Recording(folder) => {
+            WorldOrigin::Recording(folder) => {
                 Some(Replay::read_allowing(folder.clone(), &options.allowed)?)
             }
-            Beginning::Empty | Beginning::Setup(_) | Beginning::Scenario(_) => None,
+            WorldOrigin::Empty | WorldOrigin::Setup(_) | WorldOrigin::Scenario(_) => None,
         };
         let mut app = headless_app_with(plugins(options, replay.as_ref())?);
         app.init_resource::<FactLog>()
@@ -165,19 +165,19 @@ impl TableWorld {
             world.world.write_command(RobotCommand::Show(true));
         }
         match &options.beginning {
-            Beginning::Empty if options.shows_robot => world.step(1),
-            Beginning::Empty => {}
-            Beginning::Setup(file) => {
+            WorldOrigin::Empty if options.shows_robot => world.step(1),
+            WorldOrigin::Empty => {}
+            WorldOrigin::Setup(file) => {
                 let scene = world.read_scene(file)?;
                 world.set_scene(scene);
                 world.step(1);
             }
-            Beginning::Scenario(file) => {
+            WorldOrigin::Scenario(file) => {
                 let mut scenario = read_scenario(file)?;
                 scenario.allowed.clone_from(&options.allowed);
                 world.perform_scenario(&scenario)?;
             }
-            Beginning::Recording(_) => world.go_to_start(),
+            WorldOrigin::Recording(_) => world.go_to_start(),
         }
         Ok(world)
     }
@@ -237,11 +237,11 @@ impl TableWorld {
     }
 
     /// The objects on the table, in the order in which they came.
-    pub fn objects(&self) -> Vec<ObjectState> {
+    pub fn objects(&self) -> Vec<TableObject> {
         let index = self.world.resource::<ObjectIndex>();
         let objects = index.iter().filter_map(|entity| {
             let object = self.world.get_entity(entity).ok()?;
-            Some(ObjectState {
+            Some(TableObject {
                 spec: object.get::<ObjectSpec>()?.clone(),
                 pose: Pose::from(object.get::<Transform>()?),
                 twist: object.get::<Twist>().copied().unwrap_or_default(),
@@ -293,9 +293,9 @@ impl TableWorld {
     }
 
     /// The present moment, but for files.
-    pub fn snapshot(&mut self) -> Moment {
+    pub fn snapshot(&mut self) -> WorldMoment {
         self.world.resource_mut::<KeepRemoved>().for_playback = true;
-        Moment {
+        WorldMoment {
             world: WorldSnapshot::take(&mut self.world),
             performer: self.performer.clone(),
             given: GivenCommands::of(&self.world),
@@ -307,7 +307,7 @@ impl TableWorld {
     ///
     /// # Errors
     /// A recording runs: it cannot go back.
-    pub fn restore(&mut self, moment: &Moment) -> Result<(), EnvironmentError> {
+    pub fn restore(&mut self, moment: &WorldMoment) -> Result<(), EnvironmentError> {
         if self.world.resource::<Recording>().0 {
             return Err(EnvironmentError::Recording(
                 "a recording runs, and cannot go back; finish it first".into(),

@@ -8,7 +8,7 @@ use std::{
 };
 
 use crate::{
-    environment::{Environment, EnvironmentOptions, Transition},
+    environment::{EnvironmentOptions, TaskEnvironment, Transition},
     error::EnvironmentError,
     observation::ObservationSpace,
     task::EnvironmentTask,
@@ -85,10 +85,10 @@ pub struct LastObservations {
 
 struct Job {
     slot: Box<Slot>,
-    order: Order,
+    order: SlotOrder,
 }
 
-enum Order {
+enum SlotOrder {
     Reset(Option<u64>),
     Step,
 }
@@ -96,7 +96,7 @@ enum Order {
 /// An environment, on its way between the caller and the workers.
 struct Slot {
     number: usize,
-    environment: Environment,
+    environment: TaskEnvironment,
     autoreset: Autoreset,
     action: Vec<f32>,
     observation: Observed,
@@ -115,7 +115,7 @@ struct Observed {
 }
 
 impl Observed {
-    fn take(&mut self, environment: &mut Environment) -> Result<(), EnvironmentError> {
+    fn take(&mut self, environment: &mut TaskEnvironment) -> Result<(), EnvironmentError> {
         let observation = environment.options().observation;
         self.state.resize(environment.state_layout().numbers(), 0.0);
         environment.observe_state(&mut self.state);
@@ -157,10 +157,10 @@ impl Slot {
         Ok(())
     }
 
-    fn obey(&mut self, order: &Order) {
+    fn obey(&mut self, order: &SlotOrder) {
         let done = catch_unwind(AssertUnwindSafe(|| match order {
-            Order::Reset(seed) => self.reset(*seed),
-            Order::Step => self.step(),
+            SlotOrder::Reset(seed) => self.reset(*seed),
+            SlotOrder::Step => self.step(),
         }));
         self.result = done.unwrap_or_else(|_| {
             Err(EnvironmentError::World(
@@ -174,7 +174,7 @@ impl VectorEnvironment {
     /// So many environments of a task over so many threads; 0 for one a core.
     ///
     /// # Errors
-    /// As [`Environment::new`].
+    /// As [`TaskEnvironment::new`].
     pub fn new(
         task: &EnvironmentTask,
         options: &EnvironmentOptions,
@@ -183,7 +183,7 @@ impl VectorEnvironment {
         autoreset: Autoreset,
     ) -> Result<Self, EnvironmentError> {
         let slots = (0..count).map(|number| {
-            let environment = Environment::new(task.clone(), options)?;
+            let environment = TaskEnvironment::new(task.clone(), options)?;
             Ok(Some(Box::new(Slot {
                 number,
                 action: vec![0.0; environment.action_len()],
@@ -295,7 +295,10 @@ impl VectorEnvironment {
     ) -> Result<(), EnvironmentError> {
         self.check_home()?;
         for number in 0..self.slots.len() {
-            self.give(number, Order::Reset(seeds.get(number).copied().flatten()))?;
+            self.give(
+                number,
+                SlotOrder::Reset(seeds.get(number).copied().flatten()),
+            )?;
         }
         self.receive(self.slots.len(), goes_on).map(drop)
     }
@@ -350,7 +353,7 @@ impl VectorEnvironment {
             if let Some(slot) = &mut self.slots[number] {
                 slot.action.copy_from_slice(action);
             }
-            self.give(number, Order::Step)?;
+            self.give(number, SlotOrder::Step)?;
         }
         Ok(())
     }
@@ -395,12 +398,12 @@ impl VectorEnvironment {
     }
 
     /// An environment that is not on its way.
-    pub fn environment(&mut self, number: usize) -> Option<&mut Environment> {
+    pub fn environment(&mut self, number: usize) -> Option<&mut TaskEnvironment> {
         let slot = self.slots.get_mut(number)?.as_mut()?;
         Some(&mut slot.environment)
     }
 
-    fn give(&mut self, number: usize, order: Order) -> Result<(), EnvironmentError> {
+    fn give(&mut self, number: usize, order: SlotOrder) -> Result<(), EnvironmentError> {
         let slot = self.slots[number].take();
         let job = slot.map(|slot| Job { slot, order });
         let given = job.zip(self.jobs.as_ref());

@@ -3,14 +3,14 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{Actor, CommandId, CommandWriter, RecordingFact, SimFact};
 
-use crate::{ScenarioRun, sight::Sight};
+use crate::{ScenarioRun, sight::ScenarioSight};
 
 /// Takes the steps that are due of the run in the world.
 pub(crate) fn take_due_steps(
     mut run: ResMut<ScenarioRun>,
     commands: CommandWriter,
     news: News,
-    sight: Sight,
+    sight: ScenarioSight,
 ) {
     take_due(&mut run, commands, news, &sight);
 }
@@ -20,12 +20,17 @@ pub(crate) fn take_due_steps_of(
     InMut(run): InMut<ScenarioRun>,
     commands: CommandWriter,
     news: News,
-    sight: Sight,
+    sight: ScenarioSight,
 ) {
     take_due(run, commands, news, &sight);
 }
 
-fn take_due(run: &mut ScenarioRun, mut commands: CommandWriter, mut news: News, sight: &Sight) {
+fn take_due(
+    run: &mut ScenarioRun,
+    mut commands: CommandWriter,
+    mut news: News,
+    sight: &ScenarioSight,
+) {
     let mut refusal = None;
     for fact in news.facts.read() {
         if let SimFact::Recording(RecordingFact::Failed { reason, .. }) = fact {

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::{Check, RobotCheck, rest::Stillness, seen::Seen, sight::Sight};
+use crate::{Check, RobotCheck, rest::Stillness, seen::Seen, sight::ScenarioSight};
 
 /// Judges checks of a world. Rest is a matter of time: it has to [observe](Self::observe) the world while that is stepped.
 ///
@@ -78,14 +78,14 @@ impl Judge {
     }
 }
 
-fn observe((InMut(stillness), In(ticks)): (InMut<Stillness>, In<u64>), sight: Sight) {
+fn observe((InMut(stillness), In(ticks)): (InMut<Stillness>, In<u64>), sight: ScenarioSight) {
     stillness.observe(&sight.seen());
     stillness.pass_over(ticks.saturating_sub(1));
 }
 
 fn judge(
     (InRef(stillness), InRef(checks)): (InRef<Stillness>, InRef<[Check]>),
-    sight: Sight,
+    sight: ScenarioSight,
 ) -> Vec<Verdict> {
     let seen = sight.seen();
     let judged = checks.iter().map(|check| {

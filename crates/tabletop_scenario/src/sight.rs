@@ -8,7 +8,7 @@ use crate::seen::{ScenarioObject, Seen};
 
 /// Everything that steps and checks look at.
 #[derive(SystemParam)]
-pub(crate) struct Sight<'w, 's> {
+pub(crate) struct ScenarioSight<'w, 's> {
     index: Res<'w, ObjectIndex>,
     objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform)>,
     tables: Query<'w, 's, &'static Table>,
@@ -19,7 +19,7 @@ pub(crate) struct Sight<'w, 's> {
     layout: Res<'w, RobotLayout>,
 }
 
-impl Sight<'_, '_> {
+impl ScenarioSight<'_, '_> {
     /// The present world.
     pub fn seen(&self) -> Seen<'_> {
         let objects = self.index.iter().filter_map(|entity| {

@@ -14,11 +14,11 @@ use crate::shipped::{read_text, shipped_files, true_path};
 #[derive(Debug)]
 pub struct RobotFileError {
     path: PathBuf,
-    fault: Fault,
+    fault: RobotFault,
 }
 
 #[derive(Debug)]
-enum Fault {
+enum RobotFault {
     Unreadable(io::Error),
     Layout(LayoutError),
     Description(DescriptionError),
@@ -30,10 +30,10 @@ impl fmt::Display for RobotFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.path.display())?;
         match &self.fault {
-            Fault::Unreadable(error) => error.fmt(f),
-            Fault::Layout(error) => error.fmt(f),
-            Fault::Description(error) => error.fmt(f),
-            Fault::Outside(urdf) => write!(
+            RobotFault::Unreadable(error) => error.fmt(f),
+            RobotFault::Layout(error) => error.fmt(f),
+            RobotFault::Description(error) => error.fmt(f),
+            RobotFault::Outside(urdf) => write!(
                 f,
                 "its URDF {urdf} leads out of its folder; expected a file there or below"
             ),
@@ -61,14 +61,16 @@ pub fn read_robot(path: &Path) -> Result<Description, RobotFileError> {
         path: path.to_owned(),
         fault,
     };
-    let read = |path: &Path| read_text(path).map_err(|error| at(path, Fault::Unreadable(error)));
+    let read =
+        |path: &Path| read_text(path).map_err(|error| at(path, RobotFault::Unreadable(error)));
     let text = read(path)?;
     let source = match path.extension().is_some_and(|extension| extension == "ron") {
         true => {
-            let file = LayoutFile::read(&text).map_err(|error| at(path, Fault::Layout(error)))?;
+            let file =
+                LayoutFile::read(&text).map_err(|error| at(path, RobotFault::Layout(error)))?;
             let urdf = path.with_file_name(&file.urdf);
             if !is_beside(Path::new(&file.urdf)) || is_linked_away(path, &urdf) {
-                return Err(at(path, Fault::Outside(file.urdf)));
+                return Err(at(path, RobotFault::Outside(file.urdf)));
             }
             DescriptionSource {
                 urdf: read(&urdf)?,
@@ -84,7 +86,7 @@ pub fn read_robot(path: &Path) -> Result<Description, RobotFileError> {
             reach: None,
         },
     };
-    Description::read(source).map_err(|error| at(path, Fault::Description(error)))
+    Description::read(source).map_err(|error| at(path, RobotFault::Description(error)))
 }
 
 /// True if a path stays in the folder that it begins in.

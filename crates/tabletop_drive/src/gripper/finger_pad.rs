@@ -51,6 +51,11 @@ impl FingerPad {
         })
     }
 
+    /// Half the extents, in the frame of the end effector, of the space in which the rays of both faces are.
+    pub fn space_between(opening: f32, finger: Vec3) -> Vec3 {
+        Vec3::new(opening / 2.0 + DEPTH, finger.y / 2.0, finger.z / 2.0)
+    }
+
     /// Length of each ray of the face to a body, at most `reach`.
     pub fn probe<'a>(
         &'a self,

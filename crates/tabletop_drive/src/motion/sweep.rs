@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::Aabb;
 use tabletop_core::LimbId;
+use tabletop_geometry::Pose;
 use tabletop_physics::{
     SweptSolid, are_near,
     limits::{HALVINGS, LEAST_PART, MOST_SWEEPING_STEPS, SWEEPING_STEP},
@@ -13,11 +14,9 @@ use tabletop_robot::Positions;
 use crate::{
     command::joint_targets::JointTargets, command::joint_targets::Setpoint,
     gripper::alignment::PRESS, gripper::closing::Closing, gripper::closing::Graspable,
-    gripper::closing::close, motion::tick_motion::TickMotion, owner::Owner,
+    gripper::closing::close, gripper::finger_pad::FingerPad, motion::tick_motion::TickMotion,
+    owner::Owner,
 };
-
-/// Largest distance from an end effector, in units, of an object between its fingers.
-const BETWEEN: f32 = 2.0;
 
 impl TickMotion<'_> {
     /// Turns the neck.
@@ -72,12 +71,10 @@ impl TickMotion<'_> {
         if setpoint > opening {
             there[joint.index()] = setpoint;
         } else if setpoint < opening && !self.holds[limb.index()] {
-            closing = close(
-                self.end_effector(limb),
-                opening as f32,
-                layout.limb(limb).gripper.finger,
-                &self.between(limb),
-            );
+            let (end_effector, finger) =
+                (self.end_effector(limb), layout.limb(limb).gripper.finger);
+            let between = self.between(end_effector, opening as f32, finger);
+            closing = close(end_effector, opening as f32, finger, &between);
             let press = if is_pressing { PRESS } else { 0.0 };
             let room = f64::from(closing.room) + press;
             there[joint.index()] = setpoint.max(opening - room).max(least);
@@ -93,9 +90,15 @@ impl TickMotion<'_> {
     }
 
     /// Objects that may be between the fingers of a gripper.
-    fn between(&mut self, limb: LimbId) -> Vec<Graspable> {
-        let at = self.end_effector(limb).location;
-        let near = Aabb::new(at - BETWEEN, at + BETWEEN);
+    fn between(&mut self, end_effector: Pose, opening: f32, finger: Vec3) -> Vec<Graspable> {
+        let [near, at] = [
+            FingerPad::space_between(opening, finger),
+            end_effector.location,
+        ];
+        let axes = Mat3::from_quat(end_effector.rotation);
+        let reach =
+            axes.x_axis.abs() * near.x + axes.y_axis.abs() * near.y + axes.z_axis.abs() * near.z;
+        let near = Aabb::new(at - reach, at + reach);
         let things = self.environment.free.iter();
         things
             .filter(|thing| are_near(&thing.bounds, &near))

@@ -7,7 +7,7 @@ mod worlds;
 
 use tabletop_core::Random;
 use tabletop_environment::{
-    ActionSpace, Environment, EnvironmentOptions, EnvironmentTask, ObservationSpace,
+    ActionSpace, EnvironmentOptions, EnvironmentTask, ObservationSpace, TaskEnvironment,
     registered_tasks,
 };
 use tabletop_film::FilmCamera;
@@ -30,7 +30,7 @@ fn options(action: ActionSpace) -> EnvironmentOptions {
 }
 
 /// All that an environment shows, as bits.
-fn bits(environment: &mut Environment) -> Vec<u32> {
+fn bits(environment: &mut TaskEnvironment) -> Vec<u32> {
     let mut state = vec![0.0; environment.state_layout().numbers()];
     environment.observe_state(&mut state);
     let picture = environment.picture().unwrap();

@@ -6,13 +6,13 @@ use bevy::{
 };
 use tabletop_core::Random;
 use tabletop_environment::{
-    ActionSpace, Autoreset, Environment, EnvironmentOptions, VectorEnvironment,
+    ActionSpace, Autoreset, EnvironmentOptions, TaskEnvironment, VectorEnvironment,
 };
 
 use crate::{action, bits, options, task};
 
 /// What an environment shows in an episode of some random steps.
-fn rollout(environment: &mut Environment, seed: u64, steps: usize) -> Vec<Vec<u32>> {
+fn rollout(environment: &mut TaskEnvironment, seed: u64, steps: usize) -> Vec<Vec<u32>> {
     environment.reset(Some(seed)).unwrap();
     let mut random = Random::new(seed);
     let mut shown = vec![bits(environment)];
@@ -33,7 +33,7 @@ fn an_episode_is_the_same_after_others_as_in_a_new_environment() {
             | ActionSpace::JointPosition
             | ActionSpace::EndEffectorDelta => 40,
         };
-        let make = || Environment::new(task("StackThree"), &options(space)).unwrap();
+        let make = || TaskEnvironment::new(task("StackThree"), &options(space)).unwrap();
         let mut used = make();
         rollout(&mut used, 1, steps);
         assert!(
@@ -46,10 +46,10 @@ fn an_episode_is_the_same_after_others_as_in_a_new_environment() {
 #[test]
 fn a_restored_environment_goes_on_as_before() {
     let mut environment =
-        Environment::new(task("StackThree"), &options(ActionSpace::JointVelocity)).unwrap();
+        TaskEnvironment::new(task("StackThree"), &options(ActionSpace::JointVelocity)).unwrap();
     rollout(&mut environment, 3, 20);
     let moment = environment.snapshot();
-    let on = |environment: &mut Environment| {
+    let on = |environment: &mut TaskEnvironment| {
         let mut random = Random::new(9);
         let steps = (0..20).map(|_| {
             let action = action(&mut random, environment.action_len());
@@ -129,7 +129,7 @@ fn environments_that_are_received_as_they_are_ready_show_the_same() {
     }
     assert!(many.receive(1, || true).is_err());
     let states = many.results().states.clone();
-    let mut alone = Environment::new(task("StackThree"), &options).unwrap();
+    let mut alone = TaskEnvironment::new(task("StackThree"), &options).unwrap();
     let numbers = alone.state_layout().numbers();
     for (number, steps) in steps.into_iter().enumerate() {
         alone.reset(Some(number as u64)).unwrap();
@@ -145,8 +145,8 @@ fn environments_that_are_received_as_they_are_ready_show_the_same() {
 #[test]
 fn what_was_removed_is_kept_for_moments_alone() {
     let mut environment =
-        Environment::new(task("StackThree"), &options(ActionSpace::JointVelocity)).unwrap();
-    let count = |environment: &mut Environment| {
+        TaskEnvironment::new(task("StackThree"), &options(ActionSpace::JointVelocity)).unwrap();
+    let count = |environment: &mut TaskEnvironment| {
         let world = environment.table_world().world_mut();
         let mut all = world.query_filtered::<Entity, Allow<Disabled>>();
         all.iter(world).count()

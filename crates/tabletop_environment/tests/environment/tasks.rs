@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tabletop_core::Random;
 use tabletop_environment::{
-    ActionSpace, Environment, EnvironmentOptions, EnvironmentTask, registered_tasks,
+    ActionSpace, EnvironmentOptions, EnvironmentTask, TaskEnvironment, registered_tasks,
 };
 
 use crate::{action, options, task};
@@ -18,7 +18,7 @@ fn every_registered_environment_runs() {
             robot: task.robot.clone(),
             ..options(ActionSpace::JointVelocity)
         };
-        let mut environment = Environment::new(task.task(true).unwrap(), &options)
+        let mut environment = TaskEnvironment::new(task.task(true).unwrap(), &options)
             .unwrap_or_else(|error| panic!("{}: {error}", task.name));
         let mut random = Random::new(0);
         for seed in 0..3 {
@@ -38,7 +38,7 @@ fn every_registered_environment_runs() {
 #[test]
 fn crowded_tasks_find_room() {
     let task = task("BuildLetters");
-    let mut environment = Environment::new(task, &options(ActionSpace::JointVelocity)).unwrap();
+    let mut environment = TaskEnvironment::new(task, &options(ActionSpace::JointVelocity)).unwrap();
     for seed in 0..100 {
         environment.reset(Some(seed)).unwrap();
     }
@@ -53,7 +53,7 @@ fn a_stack_that_is_built_is_a_success() {
         &[],
     );
     let options = options(ActionSpace::PickPlace);
-    let mut environment = Environment::new(stack.unwrap(), &options).unwrap();
+    let mut environment = TaskEnvironment::new(stack.unwrap(), &options).unwrap();
     environment.reset(Some(0)).unwrap();
     // The red block is at x = 2, the green one at -2; the table is 20 wide.
     let transition = environment.step(&[0.2, 0.0, -0.2, 0.0, 0.25]).unwrap();
@@ -66,10 +66,10 @@ fn a_stack_that_is_built_is_a_success() {
 #[test]
 fn a_reached_target_is_a_success() {
     let options = options(ActionSpace::EndEffectorDelta);
-    let mut environment = Environment::new(task("Reach"), &options).unwrap();
+    let mut environment = TaskEnvironment::new(task("Reach"), &options).unwrap();
     for seed in 0..5 {
         environment.reset(Some(seed)).unwrap();
-        let gap = |environment: &Environment| environment.verdicts().next().unwrap().1.gap;
+        let gap = |environment: &TaskEnvironment| environment.verdicts().next().unwrap().1.gap;
         let mut reward = 0.0;
         let first = gap(&environment).length();
         let reached = (0..200).any(|_| {

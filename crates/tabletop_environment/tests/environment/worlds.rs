@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use tabletop_environment::{Beginning, TableWorld, WorldOptions};
+use tabletop_environment::{TableWorld, WorldOptions, WorldOrigin};
 use tabletop_film::{CameraPlace, FilmCamera};
 use tabletop_geometry::Pose;
 use tabletop_recorder::Session;
 
-fn world(beginning: Beginning) -> TableWorld {
+fn world(beginning: WorldOrigin) -> TableWorld {
     TableWorld::new(&WorldOptions {
         beginning,
         shows_robot: false,
@@ -18,10 +18,10 @@ fn world(beginning: Beginning) -> TableWorld {
 
 #[test]
 fn steps_take_the_ticks_that_they_take_in_a_scenario() {
-    let mut whole = world(Beginning::Scenario(
+    let mut whole = world(WorldOrigin::Scenario(
         "shipped:scenarios/stack_three.ron".into(),
     ));
-    let mut parts = world(Beginning::Empty);
+    let mut parts = world(WorldOrigin::Empty);
     parts
         .perform(r#"Load(file: "shipped:tablesetup/blocks.xml")"#)
         .unwrap();
@@ -52,7 +52,7 @@ fn steps_take_the_ticks_that_they_take_in_a_scenario() {
 
 #[test]
 fn a_step_that_fails_says_so_and_the_world_goes_on() {
-    let mut world = world(Beginning::Setup("shipped:tablesetup/default.xml".into()));
+    let mut world = world(WorldOrigin::Setup("shipped:tablesetup/default.xml".into()));
     let error = world.perform(r#"Grasp("Nothing")"#).unwrap_err();
     assert!(error.to_string().contains("Nothing"), "{error}");
     let error = world.perform("Jump").unwrap_err();
@@ -67,7 +67,7 @@ fn a_step_that_fails_says_so_and_the_world_goes_on() {
 fn a_recording_begins_where_it_began() {
     let folder = std::env::temp_dir().join(format!("tabletop_worlds_{}", std::process::id()));
     let options = WorldOptions {
-        beginning: Beginning::Setup("shipped:tablesetup/default.xml".into()),
+        beginning: WorldOrigin::Setup("shipped:tablesetup/default.xml".into()),
         ..WorldOptions::default()
     };
     let mut recorded = TableWorld::new(&options).unwrap();
@@ -79,7 +79,7 @@ fn a_recording_begins_where_it_began() {
     recorded.perform("Wait(1)").unwrap();
     assert_eq!(recorded.finish_recording().unwrap(), 1);
     let session = Session::read(folder.join("session.jsonl")).unwrap();
-    let mut again = world(Beginning::Recording(folder.clone()));
+    let mut again = world(WorldOrigin::Recording(folder.clone()));
     assert_eq!(again.tick(), session.header.start_tick);
     assert_ne!(again.objects(), then);
     again.step(1);
@@ -90,7 +90,7 @@ fn a_recording_begins_where_it_began() {
 
 #[test]
 fn any_camera_sees_the_world() {
-    let mut world = world(Beginning::Setup("shipped:tablesetup/default.xml".into()));
+    let mut world = world(WorldOrigin::Setup("shipped:tablesetup/default.xml".into()));
     let above = Pose::looking_at(
         bevy::math::Vec3::new(0.0, -8.0, 12.0),
         bevy::math::Vec3::ZERO,
@@ -118,9 +118,9 @@ fn any_camera_sees_the_world() {
 #[test]
 fn a_missing_file_is_an_error() {
     for beginning in [
-        Beginning::Setup(PathBuf::from("missing.xml")),
-        Beginning::Scenario(PathBuf::from("missing.ron")),
-        Beginning::Recording(PathBuf::from("missing")),
+        WorldOrigin::Setup(PathBuf::from("missing.xml")),
+        WorldOrigin::Scenario(PathBuf::from("missing.ron")),
+        WorldOrigin::Recording(PathBuf::from("missing")),
     ] {
         let options = WorldOptions {
             beginning,
