@@ -10,6 +10,7 @@ use tabletop_core::{
 use tabletop_episodes::robot_body;
 use tabletop_film::FilmCamera;
 use tabletop_planner::RobotBody;
+use tabletop_robot::{Description, RobotPlugin};
 use tabletop_scenario::{Check, Judge, Verdict};
 use tabletop_sim::{remember_beginning, reset};
 
@@ -149,27 +150,50 @@ impl TaskEnvironment {
         task: EnvironmentTask,
         options: &EnvironmentOptions,
     ) -> Result<Self, EnvironmentError> {
+        let robot = Self::shared_robot(options)?;
+        Self::with_robot(task, options, robot)
+    }
+
+    /// The robot of these options, whose clones share what they can.
+    pub(crate) fn shared_robot(
+        options: &EnvironmentOptions,
+    ) -> Result<RobotPlugin, EnvironmentError> {
+        let mut robot = robot_plugin(options.robot.as_deref(), options.is_dynamic)?;
+        if robot.description.is_none() {
+            let baxter = Description::baxter();
+            robot.description =
+                Some(baxter.map_err(|error| EnvironmentError::World(error.to_string()))?);
+        }
+        Ok(robot)
+    }
+
+    /// [`new`](Self::new) with a clone of a shared robot.
+    pub(crate) fn with_robot(
+        task: EnvironmentTask,
+        options: &EnvironmentOptions,
+        robot: RobotPlugin,
+    ) -> Result<Self, EnvironmentError> {
         if options.ticks_per_step == 0 || options.most_steps == 0 {
             return Err(EnvironmentError::Option(
                 "expected at least one tick in a step, and one step in an episode".into(),
             ));
         }
-        let mut world = TableWorld::new(&WorldOptions {
+        let world_options = WorldOptions {
             beginning: WorldOrigin::Empty,
             robot: options.robot.clone(),
             is_dynamic: options.is_dynamic,
             is_recordable: false,
             shows_robot: options.action != ActionSpace::PickPlace,
             ..WorldOptions::default()
-        })?;
+        };
+        let mut world = TableWorld::with_robot(&world_options, robot.clone())?;
         world.set_smooth(options.is_smooth);
         remember_beginning(world.world_mut());
         let plan = task.plan(world.world_mut(), None, &mut Random::new(0))?;
         let body = match options.action == ActionSpace::PickPlace {
             true => None,
             false => {
-                let plugin = robot_plugin(options.robot.as_deref(), options.is_dynamic)?;
-                let body = robot_body(&plugin, &plan.scene.table);
+                let body = robot_body(&robot, &plan.scene.table);
                 Some(body.map_err(|error| EnvironmentError::Option(error.to_string()))?)
             }
         };

@@ -142,13 +142,22 @@ impl TableWorld {
     /// # Errors
     /// A file cannot be read or has a fault, or a step of the scenario fails.
     pub fn new(options: &WorldOptions) -> Result<Self, EnvironmentError> {
+        let robot = robot_plugin(options.robot.as_deref(), options.is_dynamic)?;
+        Self::with_robot(options, robot)
+    }
+
+    /// [`new`](Self::new) with a robot that other worlds have, too: its looks are in memory once. That of a recording is the recording's own.
+    pub(crate) fn with_robot(
+        options: &WorldOptions,
+        robot: RobotPlugin,
+    ) -> Result<Self, EnvironmentError> {
         let replay = match &options.beginning {
             WorldOrigin::Recording(folder) => {
                 Some(Replay::read_allowing(folder.clone(), &options.allowed)?)
             }
             WorldOrigin::Empty | WorldOrigin::Setup(_) | WorldOrigin::Scenario(_) => None,
         };
-        let mut app = headless_app_with(plugins(options, replay.as_ref())?);
+        let mut app = headless_app_with(plugins(options, replay.as_ref(), robot));
         app.init_resource::<FactLog>()
             .add_systems(FixedLast, log_facts.in_set(RestingSystems));
         if let Some(replay) = &replay {
@@ -389,16 +398,14 @@ pub(crate) fn robot_plugin(
 fn plugins(
     options: &WorldOptions,
     replay: Option<&Replay>,
-) -> Result<PluginGroupBuilder, EnvironmentError> {
+    robot: RobotPlugin,
+) -> PluginGroupBuilder {
     let plugins = match replay {
         Some(replay) => replay.plugins(),
-        None => {
-            let robot = robot_plugin(options.robot.as_deref(), options.is_dynamic)?;
-            TabletopSimPlugins.build().set(robot)
-        }
+        None => TabletopSimPlugins.build().set(robot),
     };
-    Ok(match options.is_recordable {
+    match options.is_recordable {
         true => plugins,
         false => plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin),
-    })
+    }
 }

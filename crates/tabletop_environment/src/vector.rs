@@ -182,8 +182,9 @@ impl VectorEnvironment {
         threads: usize,
         autoreset: Autoreset,
     ) -> Result<Self, EnvironmentError> {
+        let robot = TaskEnvironment::shared_robot(options)?;
         let slots = (0..count).map(|number| {
-            let environment = TaskEnvironment::new(task.clone(), options)?;
+            let environment = TaskEnvironment::with_robot(task.clone(), options, robot.clone())?;
             Ok(Some(Box::new(Slot {
                 number,
                 action: vec![0.0; environment.action_len()],

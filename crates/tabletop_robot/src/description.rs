@@ -7,7 +7,11 @@ use tabletop_core::{LayoutError, LayoutFile, RobotLayout, is_shipped};
 use tabletop_kinematics::{Geometry, ModelError, RobotModel};
 use thiserror::Error;
 
-use crate::{articulation::tree::Articulation, look::meshes::is_ours, source::DescriptionSource};
+use crate::{
+    articulation::tree::Articulation,
+    look::{meshes::is_ours, shared_figures::SharedFigures},
+    source::DescriptionSource,
+};
 
 /// The description of the robot at the table.
 #[derive(Resource, Clone, Debug)]
@@ -18,6 +22,8 @@ pub struct Description {
     pub layout: RobotLayout,
     /// The files that it was read from; `None` for the robot that ships with the program.
     pub source: Option<DescriptionSource>,
+    /// The looks of its bodies, which its clones share.
+    pub(crate) figures: SharedFigures,
 }
 
 /// The error of a robot that cannot be used.
@@ -62,6 +68,7 @@ impl Description {
             model,
             layout,
             source: Some(source),
+            figures: SharedFigures::default(),
         })
     }
 
@@ -75,6 +82,7 @@ impl Description {
             model: tabletop_kinematics::baxter()?,
             layout: RobotLayout::default(),
             source: None,
+            figures: SharedFigures::default(),
         })
     }
 }

@@ -18,6 +18,7 @@ pub(crate) mod meshes;
 mod palette;
 
 mod shape_file;
+pub(crate) mod shared_figures;
 mod shipped;
 mod solids;
 mod tube;

@@ -156,7 +156,7 @@ fn gap(check: &Check, seen: &Seen, holds: bool) -> Gap {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{CorePlugin, ObjectSpec, Rollback, Shape, StepApp as _, Table};
+    use tabletop_core::{CorePlugin, ObjectIndex, ObjectSpec, Shape, StepApp as _, Table};
     use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
@@ -173,8 +173,9 @@ mod tests {
             };
             let pose = Pose::at(Vec3::new(x, 0.0, z));
             let spec = ObjectSpec::new(id, pose, 1.0, shape);
-            app.world_mut()
-                .spawn((spec, Transform::from(pose), Rollback));
+            let world = app.world_mut();
+            let object = world.spawn((spec, Transform::from(pose))).id();
+            world.resource_mut::<ObjectIndex>().insert(id, object);
         }
         app
     }

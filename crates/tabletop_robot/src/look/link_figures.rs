@@ -42,7 +42,8 @@ pub(crate) fn show_figures(
         return;
     }
     if show.is_some() && figures.bodies.is_empty() {
-        figures.bodies = figures_of(&description, &articulation);
+        let make = || figures_of(&description, &articulation);
+        figures.bodies = description.figures.get_or_make(make).to_vec();
     }
     for (number, &part) in parts.0.iter().enumerate() {
         let body = &articulation.bodies[number];
