@@ -6,7 +6,7 @@ use tabletop_core::{
     WriteCommand as _, step_world,
 };
 use tabletop_geometry::{Pose, turn_about};
-use tabletop_robot::reach;
+use tabletop_robot::reach_nearby;
 
 /// Distance, in units, and angle about the vertical, in rad, by which a step moves an end effector at most: with 20 steps a second 2 units/s and
 /// 2 rad/s.
@@ -130,7 +130,7 @@ impl ActionOrders {
                 target.location + Vec3::new(x, y, z) * LONGEST_DELTA.0,
                 (turn_about(Vec3::Z, turn * LONGEST_DELTA.1) * target.rotation).normalize(),
             );
-            if let Ok(angles) = reach(world, limb, next) {
+            if let Ok(angles) = reach_nearby(world, limb, next) {
                 *target = next;
                 let drives = names.into_iter().zip(angles.into_iter().map(Drive::Toward));
                 world.write_command(RobotCommand::Drive(drives.collect()));

@@ -24,7 +24,7 @@ pub use articulation::{
 pub use description::{Description, DescriptionError};
 pub use hand_cameras::HandCameraCarrier;
 pub use plugin::RobotPlugin;
-pub use reach::{end_effector_at, reach};
+pub use reach::{end_effector_at, reach, reach_nearby};
 pub use source::DescriptionSource;
 
 /// The names that most users of this crate need.

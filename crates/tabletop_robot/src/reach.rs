@@ -15,6 +15,19 @@ use crate::articulation::{
 /// # Errors
 /// It cannot reach the pose; the error says how near it comes.
 pub fn reach(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, String> {
+    search(world, limb, pose, usize::MAX)
+}
+
+/// [`reach`], but the search begins at the present angles alone: for poses so near that it would be of no use to begin anywhere else, and which
+/// are refused much sooner.
+///
+/// # Errors
+/// The search does not get there.
+pub fn reach_nearby(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, String> {
+    search(world, limb, pose, 1)
+}
+
+fn search(world: &mut World, limb: LimbId, pose: Pose, starts: usize) -> Result<Vec<f64>, String> {
     let limb_layout = world.resource::<Articulation>().layout.limb(limb).clone();
     let arm = limb_layout.name;
     if !pose.location.is_finite() || !pose.rotation.is_finite() {
@@ -27,9 +40,10 @@ pub fn reach(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, St
     let (chain, end_effector) = world.resource::<Articulation>().chain(limb);
     let target = in_meters(base.inverse() * pose) * end_effector.inverse();
     chain
-        .solve(
+        .solve_from(
             &Target::Pose(target),
             &robot.positions_of(&limb_layout.joints),
+            starts,
         )
         .map_err(|unreachable| {
             format!(

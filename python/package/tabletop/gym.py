@@ -186,7 +186,7 @@ class TabletopEnv(gymnasium.Env):
         if self._window is not None:
             import pygame
 
-            pygame.quit()
+            pygame.display.quit()
             self._window = None
 
     def _observe(self) -> Any:
@@ -206,7 +206,7 @@ class TabletopEnv(gymnasium.Env):
         rows, columns, _ = picture.shape
         zoom = max(1, 640 // columns)
         if self._window is None:
-            pygame.init()
+            pygame.display.init()
             self._window = pygame.display.set_mode((columns * zoom, rows * zoom))
             pygame.display.set_caption("tabletop")
             self._clock = pygame.time.Clock()
