@@ -1,4 +1,4 @@
-"""Multiplies a demonstration over the nodes of a Ray cluster, into shards, and joins them.
+"""Multiplies a demonstration over the nodes of a Ray cluster, into shards, and joins them: the recordings, and LeRobot datasets of them.
 
     python examples/cluster/ray_multiply.py DEMO OUT --count 1000 --shards 8
 
@@ -8,6 +8,7 @@ shard still lacks: each demonstration is there once in the end. Without a cluste
 
 import argparse
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -18,9 +19,21 @@ import ray
 def multiply(demo: str, out: str, count: int, shard: int, shards: int) -> int:
     """Makes a shard; returns the number of its demonstrations."""
     folder = pathlib.Path(out) / f"shard-{shard}"
-    command = ["multiply", demo, "--out", folder, "--count", count, "--shard", f"{shard}/{shards}", "--jobs", 1]
-    subprocess.run([sys.executable, "-m", "tabletop", *map(str, command)], check=True)
+    tabletop("multiply", demo, "--out", folder, "--count", count, "--shard", f"{shard}/{shards}", "--jobs", 1)
     return sum(1 for made in folder.iterdir() if made.is_dir() and made.name.isdigit())
+
+
+@ray.remote(num_cpus=1, max_retries=-1, retry_exceptions=True)
+def export(out: str, shard: int) -> None:
+    """Writes a shard as a LeRobot dataset."""
+    dataset = pathlib.Path(out) / f"lerobot-{shard}"
+    shutil.rmtree(dataset, ignore_errors=True)
+    tabletop("export", f"{out}/shard-{shard}", "--to", "lerobot", dataset)
+
+
+def tabletop(*arguments: object) -> None:
+    """Runs a command of the command line."""
+    subprocess.run([sys.executable, "-m", "tabletop", *map(str, arguments)], check=True)
 
 
 def main() -> None:
@@ -36,9 +49,10 @@ def main() -> None:
         for shard in range(arguments.shards)
     ]
     print(f"{sum(ray.get(work))} demonstrations")
-    shards = sorted(str(shard) for shard in pathlib.Path(arguments.out).glob("shard-*"))
-    merge = [sys.executable, "-m", "tabletop", "dataset", "merge", *shards, "--out", f"{arguments.out}/all"]
-    subprocess.run(merge, check=True)
+    ray.get([export.remote(arguments.out, shard) for shard in range(arguments.shards)])
+    for kind, joined in ("shard", "all"), ("lerobot", "lerobot"):
+        parts = [f"{arguments.out}/{kind}-{shard}" for shard in range(arguments.shards)]
+        tabletop("dataset", "merge", *parts, "--out", f"{arguments.out}/{joined}")
 
 
 if __name__ == "__main__":
