@@ -18,7 +18,7 @@ pub(super) struct CheckArgs {
     /// Print the scene of each file as JSON
     #[arg(long)]
     dump: bool,
-    /// Print each file expanded: without <include>, <def>, <instance>, <var> and expressions
+    /// Print each file expanded: without includes, definitions, instances, variables and expressions
     #[arg(long, conflicts_with = "dump")]
     expand: bool,
     #[command(flatten)]
