@@ -5,13 +5,19 @@ use std::{collections::BTreeSet, ops::RangeInclusive, path::PathBuf, process::Ex
 use crate::{
     recorder::RecorderPlugin,
     replay::{Replay, SegmentEdit},
+    task::Requirements,
 };
 use bevy::prelude::default;
 use clap::Args;
 
 use super::{
-    Failure, allowed_paths::AllowedPaths, cut_off::say_if_cut_off, number_run::run_of,
-    range::NumberRange, recorded::say_moved_aside, terminal::show_warnings,
+    Failure,
+    allowed_paths::AllowedPaths,
+    cut_off::say_if_cut_off,
+    number_run::run_of,
+    range::NumberRange,
+    recorded::say_moved_aside,
+    terminal::{say, show_warnings},
 };
 
 /// Numbers of segments.
@@ -81,6 +87,13 @@ pub(super) fn run(args: &EditArgs) -> Result<ExitCode, Failure> {
     };
     let report = edited.record(recorder, replay.camera());
     say_moved_aside(&report.map_err(Failure::run)?);
+    let requirements = args.recording.join(Requirements::FILE);
+    if requirements.exists() {
+        say(format_args!(
+            "tabletop: {}: these requirements are not taken over, as the edited recording may have other roles; tabletop require sets its own",
+            requirements.display()
+        ));
+    }
     Ok(ExitCode::SUCCESS)
 }
 

@@ -104,3 +104,16 @@ fn an_edit_that_fails_is_refused_with_the_reason() {
     let output = tabletop(&["edit", &demo, out.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));
 }
+
+#[test]
+fn requirements_that_are_not_taken_over_are_named() {
+    let demo = demo("edit_required_demo");
+    let out = place("edit_required_out").to_str().unwrap().to_owned();
+    let edit = ["edit", &demo, &out, "--retime", "3=2"];
+    assert_eq!(stderr(&tabletop(&edit)), "");
+    fs::write(format!("{demo}/task.json"), "{}").unwrap();
+    fs::remove_dir_all(&out).unwrap();
+    let output = tabletop(&edit);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stderr(&output).contains("task.json: these requirements are not taken over"));
+}
