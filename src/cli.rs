@@ -13,12 +13,12 @@ mod edit;
 mod explain;
 mod export;
 mod failure;
-mod faultless;
 mod film_camera;
 mod hand_cameras;
 mod imitate;
 mod import;
 mod init;
+mod jobs;
 #[cfg(feature = "window")]
 mod keys;
 mod man;

@@ -8,6 +8,7 @@ use std::{
 use crate::{
     assembly::{IdAllocator, assemble},
     recorder::{RecorderError, RecordingReader, TICKS_PER_FRAME, read_original},
+    shipped::read_faultless_task,
     task::{Demonstration, DetourKind, Furniture, Requirements, Role, Task, TaskStep},
 };
 use clap::Args;
@@ -15,8 +16,7 @@ use serde_json::json;
 use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
 
 use super::{
-    Failure, Output, allowed_paths::AllowedPaths, cut_off::say_if_cut_off,
-    faultless::read_faultless_task, terminal::show_warnings,
+    Failure, Output, allowed_paths::AllowedPaths, cut_off::say_if_cut_off, terminal::show_warnings,
 };
 
 #[derive(Args)]

@@ -20,6 +20,7 @@ use crate::{
     },
     robot::RobotPlugin,
     robot_body, run_episodes, scene_at_beginning,
+    shipped::read_faultless_task,
     task::{Requirements, Task},
 };
 use bevy::prelude::*;
@@ -33,7 +34,6 @@ use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
     explain::{furniture, read},
-    faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
     range::{NumberRange, SEEDS},
     recorded::{self, say_moved_aside},

@@ -5,10 +5,11 @@ use std::{path::PathBuf, process::ExitCode};
 use crate::dataset::{DatasetError, Import, import_recording};
 use clap::Args;
 
+use crate::shipped::read_faultless_task;
+
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
-    faultless::read_faultless_task,
     recorded::say_moved_aside,
     terminal::{say, show_warnings},
 };

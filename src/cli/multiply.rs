@@ -1,12 +1,13 @@
 //! `tabletop multiply`: one demonstration becomes many.
 
-use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode, thread, time::Instant};
+use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode, time::Instant};
 
 use crate::{
     Collection, CollectionError,
     multiplication::{Made, Multiplication, Variation},
     recorder::{RecordingReader, SessionHeader, read_original},
     run_episodes,
+    shipped::read_faultless_task,
 };
 use clap::{
     Args,
@@ -18,8 +19,8 @@ use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
     cut_off::say_if_cut_off,
-    faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
+    jobs::{JOBS, at_a_time},
     progress::ProgressLine,
     range::{NumberRange, SEEDS},
     robot_options::robot_of,
@@ -79,8 +80,6 @@ const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
 const PARTS: NumberRange<f32> = NumberRange::decimal(0.0, 0.5);
 const DISTRACTORS: NumberRange<u32> = NumberRange::whole(0, 50);
 const LENGTHS: NumberRange<f32> = NumberRange::decimal(0.0, 10.0).of("units");
-pub(super) const JOBS: NumberRange<usize> = NumberRange::whole(1, 256);
-
 /// The file with what a folder of demonstrations is made of.
 const MANIFEST: &str = "multiply.json";
 
@@ -226,8 +225,7 @@ fn make_all(
     collection: &Collection,
     missing: &[u64],
 ) -> Result<Tally, Failure> {
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let jobs = args.jobs.unwrap_or(cores).clamp(1, missing.len().max(1));
+    let jobs = at_a_time(args.jobs, missing.len());
     let make = |number| make(multiplication, collection, number);
     let mut progress = ProgressLine::new(missing.len() as u64, "");
     let mut done = 0;

@@ -11,18 +11,18 @@ use crate::{
     TabletopSimPlugins,
     assembly::{IdAllocator, assemble},
     core::{
-        RestingSystems, RobotFact, RobotLayout, SceneCommand, SceneSpec, SimFact, SimTick,
-        StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
+        RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _,
+        TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
     script::shut_down,
-    shipped::{read_scenario, task_reader, true_path},
+    shipped::{task_reader, true_path},
     shown_task::shown_task,
     task::Furniture,
     task_files::save_task,
 };
 use bevy::prelude::*;
-use tabletop_scenario::{Outcome, Program, ScenarioRun};
+use tabletop_scenario::{Outcome, ScenarioRun};
 
 use super::{
     Failure, Output, WRONG_INPUT,
@@ -106,21 +106,8 @@ fn put_on_table(scene: SceneSpec, app: &mut App) {
 
 /// Performs a scenario until it is done or has failed.
 fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
-    let mut scenario = read_scenario(scenario).map_err(Failure::input)?;
-    scenario.allowed.clone_from(&args.allowed.folders);
-    if let Some(setup) = &args.setup {
-        scenario.begin_with(&true_path(setup));
-    }
-    let robot = args.robot.plugin()?;
-    let layout = robot.description.as_ref().map(|robot| &robot.layout);
-    let checked = scenario.check_for(layout.unwrap_or(RobotLayout::baxter()));
-    checked.map_err(Failure::input)?;
-    let mut program = Program::new(&scenario, |file| args.read_faultless(file), args.seed)
-        .map_err(Failure::input)?;
-    if let Some(seconds) = args.seconds {
-        program.limit = ticks(seconds);
-    }
-
+    let (scenario, robot) = args.prepare(scenario)?;
+    let program = args.program(&scenario, args.seed).map_err(Failure::input)?;
     let hand_pictures = args.hand_cameras.of(&robot)?;
     let plugins = args.plugins(robot, args.record.as_deref(), args.seed, hand_pictures)?;
     let mut app = headless_app_with(plugins);

@@ -8,14 +8,14 @@ use std::{
 use bevy::{app::PluginGroupBuilder, prelude::*};
 use clap::Args;
 use serde_json::json;
+use tabletop_scenario::{Program, Scenario, ScenarioError};
 
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
-    duration::SECONDS,
-    faultless::read_faultless_task,
+    duration::{SECONDS, ticks},
     hand_cameras::HandCameraOption,
-    multiply::JOBS,
+    jobs::JOBS,
     range::SEEDS,
     robot_options::{EngineOptions, RobotOptions, script},
     script::headless_settings,
@@ -24,11 +24,11 @@ use super::{
 };
 use crate::{
     TabletopSimPlugins,
-    core::SceneSpec,
+    core::{RobotLayout, SceneSpec},
     recorder::{HandPictures, RecorderPlugin, UnrecordedPlugin},
     robot::RobotPlugin,
     script::ScriptPlugin,
-    shipped::true_path,
+    shipped::{read_faultless_task, read_scenario, true_path},
 };
 
 #[derive(Args)]
@@ -104,6 +104,29 @@ pub(super) struct RunArgs {
 }
 
 impl RunArgs {
+    /// The scenario of this file with the task file that was asked for, and the robot, which can do all its steps.
+    pub fn prepare(&self, scenario: &Path) -> Result<(Scenario, RobotPlugin), Failure> {
+        let mut scenario = read_scenario(scenario).map_err(Failure::input)?;
+        scenario.allowed.clone_from(&self.allowed.folders);
+        if let Some(setup) = &self.setup {
+            scenario.begin_with(&true_path(setup));
+        }
+        let robot = self.robot.plugin()?;
+        let layout = robot.description.as_ref().map(|robot| &robot.layout);
+        let checked = scenario.check_for(layout.unwrap_or(RobotLayout::baxter()));
+        checked.map_err(Failure::input)?;
+        Ok((scenario, robot))
+    }
+
+    /// The scenario with the places of a seed, and the time limit that was asked for.
+    pub fn program(&self, scenario: &Scenario, seed: u64) -> Result<Program, ScenarioError> {
+        let mut program = Program::new(scenario, |file| self.read_faultless(file), seed)?;
+        if let Some(seconds) = self.seconds {
+            program.limit = ticks(seconds);
+        }
+        Ok(program)
+    }
+
     /// The simulator with this robot, and the engine that was asked for.
     pub fn simulator(&self, robot: RobotPlugin) -> Result<PluginGroupBuilder, Failure> {
         let settings = headless_settings(&self.engine, self.script.as_deref())?;
@@ -142,7 +165,7 @@ impl RunArgs {
     }
 
     /// The scene of a task file, which may include files in the allowed folders, or all its faults.
-    pub fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
+    fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
         read_faultless_task(file, &self.allowed.folders)
     }
 }

@@ -1,24 +1,22 @@
 //! `tabletop run SCENARIO --seeds A..B`: a scenario, once with each seed.
 
-use std::{fmt::Write as _, ops::Range, path::Path, process::ExitCode, thread, time::Instant};
+use std::{fmt::Write as _, ops::Range, path::Path, process::ExitCode, time::Instant};
 
 use bevy::prelude::*;
 use serde_json::json;
-use tabletop_core::{RobotCommand, RobotLayout, SimTick, TICKS_PER_SECOND, WriteCommand as _};
-use tabletop_scenario::{Outcome, Program, Scenario, ScenarioRun};
+use tabletop_core::{SimTick, StepApp as _, TICKS_PER_SECOND};
+use tabletop_scenario::{Outcome, Scenario, ScenarioRun};
 
 use super::{
-    Failure, Output, duration::ticks, multiply::refused, progress::ProgressLine, recorded,
+    Failure, Output, jobs::at_a_time, multiply::refused, progress::ProgressLine, recorded,
     run_arguments::RunArgs, terminal::say,
 };
 use crate::{
-    Collection,
-    core::{RecordingFact, SimFact, StepApp as _},
-    headless_app_with,
+    Collection, headless_app_with,
     recorder::{HandPictures, SessionHeader},
     robot::RobotPlugin,
     run_episodes,
-    shipped::{read_scenario, read_text, true_path},
+    shipped::read_text,
 };
 
 /// The file with what a folder of recordings is made of.
@@ -33,15 +31,7 @@ struct Performed {
 
 /// Performs a scenario with each seed. Exit code 1 if a step failed with one of them.
 pub(super) fn perform(path: &Path, seeds: Range<u64>, args: &RunArgs) -> Result<ExitCode, Failure> {
-    let mut scenario = read_scenario(path).map_err(Failure::input)?;
-    scenario.allowed.clone_from(&args.allowed.folders);
-    if let Some(setup) = &args.setup {
-        scenario.begin_with(&true_path(setup));
-    }
-    let robot = args.robot.plugin()?;
-    let layout = robot.description.as_ref().map(|robot| &robot.layout);
-    let checked = scenario.check_for(layout.unwrap_or(RobotLayout::baxter()));
-    checked.map_err(Failure::input)?;
+    let (scenario, robot) = args.prepare(path)?;
     let work = Work {
         scenario: &scenario,
         args,
@@ -107,8 +97,7 @@ fn perform_all(
     collection: Option<&Collection>,
     seeds: &[u64],
 ) -> Result<SeedTally, Failure> {
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let jobs = work.args.jobs.unwrap_or(cores).clamp(1, seeds.len().max(1));
+    let jobs = at_a_time(work.args.jobs, seeds.len());
     let mut progress = ProgressLine::new(seeds.len() as u64, "");
     let mut tally = SeedTally::default();
     let perform = |seed| work.perform(seed, collection);
@@ -141,9 +130,7 @@ struct Work<'a> {
 impl Work<'_> {
     /// Performs it with a seed. A recording that is whole appears in the collection.
     fn perform(&self, seed: u64, collection: Option<&Collection>) -> Result<Performed, Failure> {
-        let read = |file: &Path| self.args.read_faultless(file);
-        let program = Program::new(self.scenario, read, seed);
-        let mut program = match program {
+        let program = match self.args.program(self.scenario, seed) {
             Ok(program) => program,
             // There is no room for this seed's places.
             Err(error) => {
@@ -153,9 +140,6 @@ impl Work<'_> {
                 });
             }
         };
-        if let Some(seconds) = self.args.seconds {
-            program.limit = ticks(seconds);
-        }
         let folder = collection.map(|collection| collection.part(seed));
         let plugins = self.args.plugins(
             self.robot.clone(),
@@ -165,9 +149,7 @@ impl Work<'_> {
         )?;
         let mut app = headless_app_with(plugins);
         app.insert_resource(ScenarioRun::new(program));
-        if self.args.robot.show_robot {
-            app.world_mut().write_command(RobotCommand::Show(true));
-        }
+        self.args.robot.show(&mut app);
         let failure = loop {
             app.step(1);
             match app.world().resource::<ScenarioRun>().outcome() {
@@ -176,7 +158,6 @@ impl Work<'_> {
                 Outcome::Failed(error) => break Some(error.to_string()),
             }
         };
-        let failure = failure.filter(|_| !recording_failed(app.world()));
         let report = recorded::finish(&mut app)?;
         if let (Some(collection), None) = (collection, &failure)
             && report.started > 0
@@ -235,12 +216,4 @@ impl Work<'_> {
             "hand_cameras": self.args.hand_cameras.hand_cameras,
         }))
     }
-}
-
-/// True if the recording could not be written in the last ticks, which ends the command.
-fn recording_failed(world: &World) -> bool {
-    let facts = world.resource::<Messages<SimFact>>();
-    facts
-        .iter_current_update_messages()
-        .any(|fact| matches!(fact, SimFact::Recording(RecordingFact::Failed { .. })))
 }

@@ -22,7 +22,7 @@ use tabletop_scenario::{Performer, Program, Scenario};
 use tabletop_sim::{
     TabletopSimPlugins, headless_app_with,
     robots::read_robot,
-    shipped::{read_scenario, task_reader},
+    shipped::{read_faultless_task, read_scenario},
     task_files::save_task,
 };
 
@@ -205,7 +205,7 @@ impl TableWorld {
     /// # Errors
     /// It cannot be read, or has faults.
     pub fn read_scene(&self, file: &Path) -> Result<SceneSpec, EnvironmentError> {
-        read_scene(file, &self.options.allowed).map_err(EnvironmentError::Task)
+        read_faultless_task(file, &self.options.allowed).map_err(EnvironmentError::Task)
     }
 
     /// Puts a scene on the table in the next tick.
@@ -234,7 +234,7 @@ impl TableWorld {
         let allowed = &self.options.allowed;
         let program = Program::new(
             scenario,
-            |file| read_scene(file, allowed),
+            |file| read_faultless_task(file, allowed),
             self.options.seed,
         )?;
         Ok(self.performer.perform(&mut self.world, program)?)
@@ -364,19 +364,6 @@ impl TableWorld {
     /// The world itself, to change it.
     pub const fn world_mut(&mut self) -> &mut World {
         &mut self.world
-    }
-}
-
-/// The scene of a task file, or its faults.
-pub(crate) fn read_scene(file: &Path, allowed: &[PathBuf]) -> Result<SceneSpec, String> {
-    let task = task_reader().allowing(allowed).read(file);
-    let task = task.map_err(|error| error.to_string())?;
-    match task.faults.as_slice() {
-        [] => Ok(task.scene),
-        faults => {
-            let faults: Vec<_> = faults.iter().map(ToString::to_string).collect();
-            Err(faults.join("\n"))
-        }
     }
 }
 

@@ -9,9 +9,9 @@ use tabletop_geometry::Pose;
 use tabletop_planner::RobotBody;
 use tabletop_robot::reach;
 use tabletop_scenario::{Check, Program, RobotCheck, Scenario};
-use tabletop_sim::shipped::{read_scenario, true_path};
+use tabletop_sim::shipped::{read_faultless_task, read_scenario, true_path};
 
-use crate::{error::EnvironmentError, table_world::read_scene};
+use crate::error::EnvironmentError;
 
 /// The number of places that are tried for a target of `Reach`.
 const TRIES: usize = 1000;
@@ -165,7 +165,7 @@ fn begin(
     allowed: &[PathBuf],
     seed: u64,
 ) -> Result<EpisodePlan, EnvironmentError> {
-    let program = Program::new(scenario, |file| read_scene(file, allowed), seed)?;
+    let program = Program::new(scenario, |file| read_faultless_task(file, allowed), seed)?;
     let path = || scenario.path.clone();
     let scene = program.scene().cloned();
     let scene = scene.ok_or_else(|| EnvironmentError::NoSetup(path()))?;

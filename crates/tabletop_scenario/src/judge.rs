@@ -1,6 +1,7 @@
 //! Checks of a world outside a scenario: whether they hold, and how far the world is from them.
 
 use bevy::prelude::*;
+use tabletop_geometry::Bounds;
 
 use crate::{Check, RobotCheck, rest::Stillness, seen::Seen, sight::ScenarioSight};
 
@@ -107,10 +108,9 @@ fn gap(check: &Check, seen: &Seen, holds: bool) -> Gap {
         Check::OnTopOf { object, of, .. } => match (found(object), found(of)) {
             (Some(upper), Some(lower)) => {
                 let (upper, lower) = (upper.bounds(), lower.bounds());
-                let middle = |bounds: &tabletop_geometry::Bounds| (bounds.low + bounds.high) / 2.0;
                 Gap::between(
-                    middle(&upper).with_z(upper.low.z),
-                    middle(&lower).with_z(lower.high.z),
+                    center(&upper).with_z(upper.low.z),
+                    center(&lower).with_z(lower.high.z),
                 )
             }
             (_, _) => nothing,
@@ -122,7 +122,6 @@ fn gap(check: &Check, seen: &Seen, holds: bool) -> Gap {
         Check::Inside { object, of, .. } => match (found(object), found(of)) {
             (Some(inner), Some(outer)) => {
                 let (inner, outer) = (inner.bounds(), outer.bounds());
-                let center = |bounds: &tabletop_geometry::Bounds| (bounds.low + bounds.high) / 2.0;
                 let play =
                     ((outer.high - outer.low) - (inner.high - inner.low)).max(Vec3::ZERO) / 2.0;
                 let (inner, outer) = (center(&inner), center(&outer));
@@ -152,6 +151,10 @@ fn gap(check: &Check, seen: &Seen, holds: bool) -> Gap {
             | RobotCheck::BlockedBy { .. },
         ) => nothing,
     }
+}
+
+fn center(bounds: &Bounds) -> Vec3 {
+    (bounds.low + bounds.high) / 2.0
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use std::{
 
 use bevy::prelude::*;
 use include_dir::{Dir, include_dir};
-use tabletop_core::{ShippedFile, ShippedFiles};
+use tabletop_core::{SceneSpec, ShippedFile, ShippedFiles};
 use tabletop_scenario::{Scenario, ScenarioError};
 use tabletop_storage::{Symlinks, read_regular_text};
 use tabletop_xml::{ParsedTask, ReadError, TaskReader};
@@ -109,6 +109,21 @@ impl Plugin for ShippedFilesPlugin {
 /// It is in neither, or cannot be read.
 pub fn read_task(path: &Path) -> Result<ParsedTask, ReadError> {
     task_reader().read(path)
+}
+
+/// The scene of a task file, from the folder or the program, which may include files in the allowed folders.
+///
+/// # Errors
+///
+/// It is in neither, cannot be read, or has faults, which are listed.
+pub fn read_faultless_task(file: &Path, allowed: &[PathBuf]) -> Result<SceneSpec, String> {
+    let task = task_reader().allowing(allowed).read(file);
+    let task = task.map_err(|error| error.to_string())?;
+    let faults: Vec<_> = task.faults.iter().map(ToString::to_string).collect();
+    match faults.is_empty() {
+        true => Ok(task.scene),
+        false => Err(faults.join("\n")),
+    }
 }
 
 /// Reads task files, from the folder or the program.
