@@ -95,6 +95,7 @@ pub fn take_in(world: &mut World) -> Result {
         }
         world.run_system_cached(init_rigid_bodies)?;
         world.run_system_cached(init_colliders)?;
+        body::let_round_object_spin(world, entity);
     }
     for entity in joints {
         if let Some(connection) = world.get::<Joint>(entity).copied() {

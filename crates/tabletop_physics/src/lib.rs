@@ -35,6 +35,7 @@ mod bodies;
 mod effort;
 mod geometry;
 mod holding;
+mod impact;
 mod mover;
 mod rest;
 mod settings;
@@ -113,6 +114,7 @@ impl Plugin for PhysicsPlugin {
         app.init_resource::<Care>()
             .init_resource::<outside::WrittenBack>()
             .init_resource::<Quarantine>()
+            .init_resource::<impact::Approach>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
                 dt: TICK_SECONDS,
@@ -150,7 +152,17 @@ impl Plugin for PhysicsPlugin {
                         .after(PhysicsSet::SyncBackend)
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),
+                    impact::note_approach
+                        .run_if(impact::is_any_elastic)
+                        .after(effort::configure_solver)
+                        .before(PhysicsSet::StepSimulation)
+                        .in_set(SimSystems::Physics),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
+                    impact::rebound
+                        .run_if(impact::is_any_elastic)
+                        .after(PhysicsSet::StepSimulation)
+                        .before(relief::relieve)
+                        .in_set(SimSystems::Physics),
                     relief::relieve
                         .after(PhysicsSet::StepSimulation)
                         .before(PhysicsSet::Writeback)

@@ -8,13 +8,16 @@ use tabletop_geometry::{Bounds, Polyhedron, Pose, Primitive, Solid, Twist};
 use super::mass::mass_properties;
 use crate::{
     effort::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE},
+    impact::Elasticity,
     settings::PhysicsSettings,
     workarounds::polytope::Polytope,
 };
 
-/// Speeds below which an object falls asleep after half a second: 0.02 m/s and 0.2 rad/s.
+/// Speed, in units/s, below which all points of an object stay that falls asleep after half a second: 5 mm/s. Rapier compares half of it.
+const SLEEP_BELOW: f32 = 0.05;
+
 const SLEEP_THRESHOLDS: Sleeping = Sleeping {
-    normalized_linear_threshold: 0.2,
+    normalized_linear_threshold: SLEEP_BELOW / 2.0,
     angular_threshold: 0.2,
     sleeping: false,
 };
@@ -26,11 +29,14 @@ const POINT: f32 = 0.01;
 pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
     let settings = *world.resource::<PhysicsSettings>();
     let mut body = world.entity_mut(object);
+    if let Some(elasticity) = elasticity(&settings, spec.dynamics) {
+        body.insert_if_new(elasticity);
+    }
     body.insert_if_new((
         collider(&spec.shape),
         // Objects have a size, not a scale; a file's quaternions may be a little longer than one, which looks like a scale.
         ColliderScale::Absolute(Vec3::ONE),
-        surface(&settings, spec.dynamics),
+        friction(&settings, spec.dynamics),
         Velocity::linear(spec.dynamics.velocity),
         Twist {
             linear: spec.dynamics.velocity,
@@ -58,25 +64,46 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
     ));
 }
 
-/// The components of the table's body.
-pub(crate) fn add_table(world: &mut World, table: Entity, size: Table) {
-    let surface = surface(world.resource::<PhysicsSettings>(), Dynamics::default());
-    world
-        .entity_mut(table)
-        .insert_if_new((RigidBody::Fixed, compound(&[size.slab()]), surface));
+/// Lets an object with a round outline turn at any speed. Rapier turns others by at most 45° a step, so that their corners do not pass through things.
+pub(crate) fn let_round_object_spin(world: &mut World, object: Entity) {
+    let shape = world.get::<ObjectSpec>(object).map(|spec| &spec.shape);
+    let is_round = matches!(shape, Some(Shape::Sphere { .. } | Shape::Cylinder { .. }));
+    let handle = world.get::<RapierRigidBodyHandle>(object);
+    let Some(handle) = handle.filter(|_| is_round).map(|handle| handle.0) else {
+        return;
+    };
+    let mut sets = world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
+    if let Ok(mut set) = sets.single_mut(world)
+        && let Some(body) = set.bodies.get_mut(handle)
+    {
+        body.set_allow_fast_rotation(true);
+    }
 }
 
-fn surface(settings: &PhysicsSettings, dynamics: Dynamics) -> impl Bundle + use<> {
-    (
-        Friction {
-            coefficient: dynamics.friction.unwrap_or(settings.friction),
-            combine_rule: CoefficientCombineRule::Multiply,
-        },
-        Restitution {
-            coefficient: dynamics.restitution.unwrap_or(settings.restitution),
-            combine_rule: CoefficientCombineRule::Average,
-        },
-    )
+/// The components of the table's body.
+pub(crate) fn add_table(world: &mut World, table: Entity, size: Table) {
+    let settings = *world.resource::<PhysicsSettings>();
+    let mut table = world.entity_mut(table);
+    if let Some(elasticity) = elasticity(&settings, Dynamics::default()) {
+        table.insert_if_new(elasticity);
+    }
+    table.insert_if_new((
+        RigidBody::Fixed,
+        compound(&[size.slab()]),
+        friction(&settings, Dynamics::default()),
+    ));
+}
+
+fn friction(settings: &PhysicsSettings, dynamics: Dynamics) -> Friction {
+    Friction {
+        coefficient: dynamics.friction.unwrap_or(settings.friction),
+        combine_rule: CoefficientCombineRule::Multiply,
+    }
+}
+
+fn elasticity(settings: &PhysicsSettings, dynamics: Dynamics) -> Option<Elasticity> {
+    let restitution = dynamics.restitution.unwrap_or(settings.restitution);
+    (restitution > 0.0).then_some(Elasticity(restitution))
 }
 
 /// The collider of a whole shape, in the shape's frame.

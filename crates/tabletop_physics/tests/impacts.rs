@@ -1,0 +1,159 @@
+//! Impacts of elastic bodies have the results of the textbook.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use bevy::prelude::*;
+use tabletop_core::{Dynamics, Table, prelude::*};
+use tabletop_geometry::Twist;
+use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
+
+const BALL: Shape = Shape::Sphere {
+    radius: 0.5,
+    color: Rgb::GRAY,
+};
+
+/// A world with a table, in which all surfaces have this restitution.
+fn world(restitution: f32) -> App {
+    let mut app = App::new();
+    let settings = PhysicsSettings {
+        restitution,
+        ..default()
+    };
+    app.add_plugins((
+        MinimalPlugins,
+        CorePlugin::default(),
+        PhysicsPlugin { settings },
+    ))
+    .start();
+    app.world_mut().spawn(Table {
+        xspan: 100.0,
+        yspan: 100.0,
+    });
+    app
+}
+
+fn block(span: Vec3) -> Shape {
+    let color = Rgb::GRAY;
+    Shape::Block { span, color }
+}
+
+fn add(app: &mut App, at: Vec3, mass: f32, shape: Shape, velocity: Vec3) -> Entity {
+    let at = Pose::at(at);
+    let mut object = ObjectSpec::new(format!("{at:?}"), at, mass, shape);
+    object.dynamics = Dynamics {
+        friction: Some(0.0),
+        velocity,
+        ..default()
+    };
+    app.world_mut().spawn((object, Transform::from(at))).id()
+}
+
+fn height(app: &App, object: Entity) -> f32 {
+    app.world().get::<Transform>(object).unwrap().translation.z
+}
+
+fn twist(app: &App, object: Entity) -> Twist {
+    *app.world().get::<Twist>(object).unwrap()
+}
+
+/// The greatest heights that an object reaches after each bounce.
+fn peaks(app: &mut App, object: Entity, bounces: usize) -> Vec<f32> {
+    let mut peaks = Vec::new();
+    let mut rises = false;
+    for _ in 0..2000 {
+        let before = height(app, object);
+        app.step(1);
+        let now = height(app, object);
+        if rises && now < before {
+            peaks.push(before);
+            if peaks.len() == bounces {
+                break;
+            }
+        }
+        rises = now > before;
+    }
+    peaks
+}
+
+#[test]
+fn an_elastic_ball_keeps_its_height() {
+    for drop in [0.5, 5.0] {
+        let mut app = world(1.0);
+        let ball = add(&mut app, Vec3::Z * (0.5 + drop), 1.0, BALL, Vec3::ZERO);
+        for peak in peaks(&mut app, ball, 5) {
+            let error = (peak - 0.5) / drop - 1.0;
+            assert!(error.abs() < 0.01, "{drop}: {peak}");
+        }
+    }
+}
+
+#[test]
+fn a_ball_rises_by_the_square_of_its_restitution() {
+    for (restitution, drop) in [(0.8, 5.0), (0.5, 5.0), (0.8, 0.5)] {
+        let mut app = world(restitution);
+        let ball = add(&mut app, Vec3::Z * (0.5 + drop), 1.0, BALL, Vec3::ZERO);
+        let peak = peaks(&mut app, ball, 1)[0] - 0.5;
+        let expected = restitution * restitution * drop;
+        assert!((peak / expected - 1.0).abs() < 0.02, "{peak} {expected}");
+    }
+}
+
+#[test]
+fn a_cube_that_falls_flat_does_not_turn() {
+    for plate in [Vec3::new(0.5, 0.5, 0.5), Vec3::new(4.0, 3.0, 0.5)] {
+        for restitution in [1.0, 0.1] {
+            let mut app = world(restitution);
+            add(&mut app, Vec3::Z * 0.25, 0.0, block(plate), Vec3::ZERO);
+            let cube = add(&mut app, Vec3::Z * 6.0, 1.0, block(Vec3::ONE), Vec3::ZERO);
+            let peak = peaks(&mut app, cube, 1)[0] - 1.0;
+            let expected = restitution * restitution * 5.0;
+            assert!((peak / expected - 1.0).abs() < 0.02, "{peak} {expected}");
+            assert!(twist(&app, cube).angular.length() < 1e-3);
+        }
+    }
+}
+
+#[test]
+fn a_row_of_elastic_balls_hands_on_its_speed() {
+    for gap in [0.0, 0.01] {
+        let mut app = world(1.0);
+        let places = [-3.0, 0.0, 1.0, 2.0, 3.0, 4.0];
+        let balls = places.map(|place: f32| {
+            let at = Vec3::new(place * (1.0 + gap), 0.0, 0.5);
+            let velocity = if place < 0.0 {
+                Vec3::X * 10.0
+            } else {
+                Vec3::ZERO
+            };
+            add(&mut app, at, 1.0, BALL, velocity)
+        });
+        app.step(60);
+        let speeds = balls.map(|ball| twist(&app, ball).linear.x);
+        for (speed, expected) in speeds.iter().zip([0.0, 0.0, 0.0, 0.0, 0.0, 10.0]) {
+            assert!((speed - expected).abs() < 0.01, "{gap}: {speeds:?}");
+        }
+    }
+}
+
+#[test]
+fn a_slow_block_goes_on() {
+    let mut app = world(0.0);
+    let velocity = Vec3::X * 0.1;
+    let slow = add(&mut app, Vec3::Z * 0.5, 1.0, block(Vec3::ONE), velocity);
+    app.step(180);
+    assert!((twist(&app, slow).linear.x - 0.1).abs() < 1e-3);
+}
+
+#[test]
+fn a_small_ball_spins_as_fast_as_it_rolls() {
+    let mut app = world(0.0);
+    let ball = Shape::Sphere {
+        radius: 0.1,
+        color: Rgb::GRAY,
+    };
+    let ball = add(&mut app, Vec3::Z * 0.1, 1.0, ball, Vec3::ZERO);
+    app.step(1);
+    tabletop_physics::push(app.world_mut(), ball, Vec3::ZERO, Vec3::Y * 100.0);
+    app.step(1);
+    // Rolling damping takes 2 % of it in a tick.
+    assert!(twist(&app, ball).angular.y > 90.0);
+}
