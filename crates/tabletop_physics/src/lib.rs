@@ -84,7 +84,9 @@ use tabletop_history::RollbackApp;
 use crate::workarounds::{
     order, outside,
     quarantine::{self, Quarantine},
-    release, relief, short_turn, transforms,
+    release, relief, rolling,
+    seams::{self, SeamHooks, Seams},
+    short_turn, transforms,
 };
 
 /// Length to which Rapier scales its tolerances. The parameters are in units; a greater number would only fatten the boxes
@@ -115,13 +117,14 @@ impl Plugin for PhysicsPlugin {
             .init_resource::<outside::WrittenBack>()
             .init_resource::<Quarantine>()
             .init_resource::<impact::Approach>()
+            .init_resource::<Seams>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
                 dt: TICK_SECONDS,
                 substeps: 1,
             })
             .add_plugins(
-                RapierPhysicsPlugin::<NoUserData>::default()
+                RapierPhysicsPlugin::<SeamHooks>::default()
                     .with_custom_initialization(
                         RapierContextInitialization::InitializeDefaultRapierContext {
                             integration_parameters: integration_parameters(),
@@ -157,7 +160,7 @@ impl Plugin for PhysicsPlugin {
                         .after(effort::configure_solver)
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),
-                    RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
+                    RapierPhysicsPlugin::<SeamHooks>::get_systems(PhysicsSet::StepSimulation),
                     impact::rebound
                         .run_if(impact::is_any_elastic)
                         .after(PhysicsSet::StepSimulation)
@@ -167,7 +170,7 @@ impl Plugin for PhysicsPlugin {
                         .after(PhysicsSet::StepSimulation)
                         .before(PhysicsSet::Writeback)
                         .in_set(SimSystems::Physics),
-                    RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
+                    RapierPhysicsPlugin::<SeamHooks>::get_systems(PhysicsSet::Writeback),
                     quarantine::let_out
                         .after(systems::writeback_rigid_bodies)
                         .after(systems::writeback_mass_properties)
@@ -179,6 +182,7 @@ impl Plugin for PhysicsPlugin {
                 )
                     .in_set(RestingSystems),
             )
+            .add_observer(let_cylinders_roll)
             .add_plugins((bodies::plugin, rest::plugin))
             .add_systems(
                 FixedUpdate,
@@ -205,6 +209,15 @@ impl Plugin for PhysicsPlugin {
     }
 }
 
+fn let_cylinders_roll(
+    add: On<Add, RapierContextSimulation>,
+    mut contexts: Query<&mut RapierContextSimulation>,
+) {
+    if let Ok(mut simulation) = contexts.get_mut(add.entity) {
+        simulation.narrow_phase = rolling::narrow_phase();
+    }
+}
+
 /// Rapier's systems before a step, with our propagation of transforms in place of its own. Between them they ask for the changes of thirty
 /// components of every body, so they run only when there are any.
 fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
@@ -226,6 +239,7 @@ fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
             systems::apply_initial_rigid_body_impulses,
             systems::apply_rigid_body_user_changes,
             short_turn::turn_the_short_way,
+            seams::find_seams,
         )
             .chain(),
     )

@@ -7,6 +7,7 @@ use tabletop_core::{RestApp as _, RestingSystems, SimSystems};
 use crate::workarounds::{
     outside::{ChangedBody, ChangedCollider, Removals},
     quarantine::Quarantine,
+    seams::SeamHooks,
 };
 
 /// Number of steps after which Rapier's broad phase checks whether its tree is worth tidying up. Any other step in which everything sleeps
@@ -34,7 +35,7 @@ struct BareStep {
 
 pub(crate) fn plugin(app: &mut App) {
     // They are entities, which must not come as late as the first rest: those of objects would be others.
-    let step = app.register_system(step_simulation::<NoUserData>);
+    let step = app.register_system(step_simulation::<SeamHooks>);
     let note = app.register_system(note_step);
     app.insert_resource(BareStep { step, note })
         .init_resource::<LastStep>()

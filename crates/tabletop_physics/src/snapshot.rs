@@ -13,7 +13,7 @@ use bevy_rapier3d::{
 use tabletop_core::Held;
 use tabletop_history::{RollbackState, Since, despawn_or_park};
 
-use crate::{effort::Care, holding::Carry};
+use crate::{effort::Care, holding::Carry, workarounds::rolling};
 
 /// Rapier's whole state: not poses alone, but contacts, sleep and all else on which later steps depend.
 /// A world that is [restored](RollbackState::restore) goes on bit for bit as the one that was [saved](RollbackState::save), if the
@@ -27,12 +27,22 @@ pub struct PhysicsSnapshot {
 }
 
 /// The part of a [`RapierContextSimulation`] on which later steps depend.
-#[derive(Default)]
 struct EngineState {
     islands: IslandManager,
     broad_phase: DefaultBroadPhase,
     narrow_phase: NarrowPhase,
     ccd_solver: CCDSolver,
+}
+
+impl Default for EngineState {
+    fn default() -> Self {
+        Self {
+            islands: IslandManager::default(),
+            broad_phase: DefaultBroadPhase::default(),
+            narrow_phase: rolling::narrow_phase(),
+            ccd_solver: CCDSolver::default(),
+        }
+    }
 }
 
 impl From<&RapierContextSimulation> for EngineState {

@@ -9,7 +9,7 @@ use bevy_rapier3d::{
         query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection},
         shape::{
             ConvexPolyhedron, FeatureId, PackedFeatureId, PolygonalFeature, PolygonalFeatureMap,
-            Shape, ShapeType, SharedShape, SupportMap, TypedShape,
+            Segment, Shape, ShapeType, SharedShape, SupportMap, TypedShape,
         },
     },
     rapier::prelude::Vector,
@@ -34,8 +34,8 @@ pub(crate) struct Polytope {
 /// The faces with which a polytope touches.
 #[derive(Clone, Copy)]
 enum Touch {
-    /// The faces of a prism of [`SIDES`] along Y.
-    Prism,
+    /// The faces of a prism of [`SIDES`] along Y, which stands in for a cylinder.
+    Prism { radius: f32, half_yspan: f32 },
     /// Any faces.
     Face,
 }
@@ -63,7 +63,7 @@ impl Polytope {
             .flat_map(|side| [[0, side, side + 1], [SIDES, SIDES + side + 1, SIDES + side]]);
         let triangles: Vec<_> = sides.chain(ends).collect();
         let hull = ConvexPolyhedron::from_convex_mesh(corners.collect(), &triangles)?;
-        let touch = Touch::Prism;
+        let touch = Touch::Prism { radius, half_yspan };
         Some(SharedShape::new(Self { hull, touch }))
     }
 
@@ -74,6 +74,17 @@ impl Polytope {
             .or_else(|| ConvexPolyhedron::from_convex_hull(polyhedron.corners()))?;
         let touch = Touch::Face;
         Some(SharedShape::new(Self { hull, touch }))
+    }
+
+    /// The axis and the radius of the cylinder for which a prism stands in.
+    pub fn axis(&self) -> Option<(Segment, f32)> {
+        match self.touch {
+            Touch::Prism { radius, half_yspan } => {
+                let [low, high] = [-half_yspan, half_yspan].map(|y| Vector::Y * y);
+                Some((Segment::new(low, high), radius))
+            }
+            Touch::Face => None,
+        }
     }
 
     /// Four corners around the face in a direction, one of them next to a point; all corners if there are no more.
@@ -143,10 +154,10 @@ impl PolygonalFeatureMap for Polytope {
     ) {
         match self.touch {
             Touch::Face => *feature = self.face(direction, hint),
-            Touch::Prism if direction.y.abs() > libm::hypotf(direction.x, direction.z) => {
+            Touch::Prism { .. } if direction.y.abs() > libm::hypotf(direction.x, direction.z) => {
                 *feature = self.end(direction, hint);
             }
-            Touch::Prism => self
+            Touch::Prism { .. } => self
                 .hull
                 .local_support_feature(direction.with_y(0.0), feature),
         }
