@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 37] = [
+const RULES: [Rule; 38] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -219,6 +219,15 @@ const RULES: [Rule; 37] = [
             "tabletop_sim",
         ],
     ),
+    Rule::new(
+        "tabletop_validation",
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_physics",
+            "tabletop_sim",
+        ],
+    ),
     Rule::new("tabletop_python", &["tabletop"]),
     Rule::new(
         "tabletop_export",
@@ -310,6 +319,7 @@ const RULES: [Rule; 37] = [
             "tabletop_task",
             "tabletop_planner",
             "tabletop_user",
+            "tabletop_validation",
             "tabletop_view",
             "tabletop_gui",
         ],

@@ -1,0 +1,143 @@
+//! Every measurement is within its limit, but those that are known to fall short.
+//!
+//! Each experiment is a test, so `-- bounce --nocapture` carries out those whose names have `bounce` in them and prints their tables. Those that
+//! take long are ignored by default.
+#![expect(clippy::print_stdout, reason = "`--nocapture` prints the tables")]
+
+use std::{collections::BTreeSet, process::ExitCode};
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use tabletop_validation::{Experiment, experiments, table};
+
+/// The names of the measurements that fall short. The list can only shrink: the test of an experiment fails, too, if one of these holds.
+const SHORT: &[&str] = &[
+    "roll-cylinder-4-degrees: speed",
+    "roll-cylinder-20-degrees: slip",
+    "roll-cylinder-20-degrees: speed",
+    "roll-ball-4-degrees-damped: slip",
+    "roll-ball-20-degrees-damped: slip",
+    "roll-cylinder-4-degrees-damped: speed",
+    "roll-cylinder-20-degrees-damped: slip",
+    "roll-cylinder-20-degrees-damped: speed",
+    "roll-small-ball: change of height",
+    "roll-small-ball: speed",
+    "roll-small-ball-damped: change of height",
+    "roll-small-ball-damped: speed",
+    "roll-ball: change of height",
+    "roll-ball-damped: change of height",
+    "roll-ball-damped: speed",
+    "roll-cylinder: speed",
+    "roll-cylinder-slowly: speed",
+    "roll-cylinder-damped: speed",
+    "bounce-1-from-0.5: height",
+    "bounce-0.8-from-0.5: height",
+    "bounce-0.5-from-0.5: height",
+    "bounce-ten-times: lowest",
+    "bounce-cube-0.8: height",
+    "bounce-cube-0.8: spin",
+    "bounce-cube: height",
+    "bounce-cube: spin",
+    "bounce-cube-small-plate: height",
+    "bounce-cube-small-plate: spin",
+    "bounce-cube-large-plate: height",
+    "bounce-cube-large-plate: spin",
+    "bounce-cube-seam: spin",
+    "bounce-cube-corner: height",
+    "bounce-cube-corner: spin",
+    "seam-cube: change of height",
+    "seam-cube: speed",
+    "seam-ball: change of height",
+    "seam-ball: speed",
+    "seam-cylinder: change of height",
+    "seam-cylinder: speed",
+    "tiles-cube: change of height",
+    "tiles-cube: speed",
+    "tiles-ball: change of height",
+    "tiles-ball: speed",
+    "tiles-cylinder: change of height",
+    "tiles-cylinder: speed",
+    "seam-rough: way",
+    "row-of-balls: energy",
+    "row-of-balls: speed of the last",
+    "row-of-balls: speed of the others",
+    "collide-cubes-elastic: first's speed",
+    "collide-cubes-1-on-1000: first's speed",
+    "collide-cubes-1-on-1000: momentum",
+    "collide-cubes-1-on-1000: second's speed",
+    "crowd-bounces: energy after 10 s",
+    "stack-1000-on-1: drift",
+    "stack-1000-on-1: height",
+    "stack-1000-on-1: penetration",
+    "stack-10000-on-1: drift",
+    "stack-10000-on-1: height",
+    "stack-10000-on-1: penetration",
+    "tower-of-planks: drift",
+    "tower-of-planks-awake: drift",
+    "slow-slide-0.3: way",
+    "slow-slide-0.1: way",
+    "slow-turn: angle",
+    "slow-sink: speed",
+    "slow-sink: way",
+    "carry-gently: slip at a = 0.4 μ g",
+    "carry-up-and-down: lift at a = 0.2 g",
+    "pendulum-90-degrees: amplitude after 10 s",
+    "pendulum-90-degrees: period",
+    "bonds-beam: sag",
+    "bonds-beam-10-kg: sag",
+];
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let prints = arguments.nocapture;
+    let trials = experiments().map(|experiment| {
+        let trial = Trial::test(experiment.name, move || holds(experiment, prints));
+        trial.with_ignored_flag(experiment.is_long)
+    });
+    let trials = trials.chain([Trial::test("names are unique and known", names)]);
+    libtest_mimic::run(&arguments, trials.collect()).exit_code()
+}
+
+/// Carries an experiment out.
+fn holds(experiment: &Experiment, prints: bool) -> Result<(), Failed> {
+    let measurements = experiment.measure();
+    if prints {
+        println!("\n{}", table(&measurements, None));
+    }
+    let mut faults = Vec::new();
+    let mut quantities = BTreeSet::new();
+    for measurement in &measurements {
+        let name = measurement.name();
+        if !quantities.insert(measurement.quantity) {
+            faults.push(format!("{name} is not unique"));
+        }
+        match (measurement.holds(), SHORT.contains(&&*name)) {
+            (false, false) => faults.push(format!("{name} falls short")),
+            (true, true) => faults.push(format!("{name} holds: take it off the list SHORT")),
+            (true, false) | (false, true) => {}
+        }
+    }
+    match faults.is_empty() {
+        true => Ok(()),
+        false => {
+            let table = table(&measurements, None);
+            Err(format!("{}\n\n{table}", faults.join("\n")).into())
+        }
+    }
+}
+
+fn names() -> Result<(), Failed> {
+    let mut names = BTreeSet::new();
+    for experiment in experiments() {
+        if !names.insert(experiment.name) {
+            return Err(format!("two experiments are named {}", experiment.name).into());
+        }
+    }
+    let known = |name: &&&str| {
+        let experiment = name.split(':').next().unwrap_or_default();
+        !names.contains(experiment)
+    };
+    match SHORT.iter().find(known) {
+        Some(name) => Err(format!("SHORT has {name}, which there is not").into()),
+        None => Ok(()),
+    }
+}
