@@ -43,6 +43,7 @@ mod seeds;
 mod shard;
 mod soak;
 mod terminal;
+mod validate;
 mod video;
 mod window;
 
@@ -108,6 +109,10 @@ enum Command {
     Init(init::InitArgs),
     /// Act at random, for hours, as a user could, and check the world after every tick
     Soak(soak::SoakArgs),
+    /// Measure the physics beside closed-form results of mechanics; exit code 1 if one is missed by more than its limit
+    ///
+    /// Its table, its units and its experiments are explained in docs/validation.md.
+    Validate(validate::ValidateArgs),
     /// Print a script with which your shell completes commands and options
     ///
     /// For bash: tabletop completions bash > ~/.local/share/bash-completion/completions/tabletop
@@ -168,6 +173,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Keys(args)) => keys::list(&args),
         Some(Command::Init(args)) => init::init(&args),
         Some(Command::Soak(args)) => soak::soak(&args),
+        Some(Command::Validate(args)) => validate::validate(&args),
         Some(Command::Completions(args)) => completions::completions(&args, &mut Cli::command()),
         Some(Command::Man) => man::man(Cli::command()),
         None => window::open(cli.window),

@@ -25,6 +25,7 @@
 //! | [`export`] | recordings as datasets of other tools |
 //! | [`dataset`] | folders of recordings and datasets: imported, described, checked, edited |
 //! | [`environment`] | worlds and environments in the hands of a program, thousands of them |
+//! | [`validation`] | small worlds whose results mechanics gives in closed form |
 //! | [`cli`] | the command line |
 //! | [`imitation`], [`multiplication`] | whole episodes in worlds of their own |
 //! | [`planner`] | the robot's plan for such a task |
@@ -87,6 +88,7 @@ pub use tabletop_storage as storage;
 pub use tabletop_task as task;
 #[cfg(feature = "window")]
 pub use tabletop_user as user;
+pub use tabletop_validation as validation;
 #[cfg(feature = "window")]
 pub use tabletop_view as view;
 pub use tabletop_xml as xml;

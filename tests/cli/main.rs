@@ -32,6 +32,7 @@ mod strange_scenes;
 mod support;
 mod task_files;
 mod usage;
+mod validate;
 mod video;
 #[cfg(feature = "window")]
 mod window;

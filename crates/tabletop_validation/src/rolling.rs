@@ -50,12 +50,12 @@ pub(crate) const EXPERIMENTS: &[Experiment] = &[
     Experiment::new("roll-after-sliding", roll_after_sliding),
 ];
 
-/// A round shape: how it is made from a radius, and its k.
+/// A shape that rolls: how it is made from a radius, and its k.
 #[derive(Clone, Copy)]
-struct Round(fn(f32) -> Specimen, f64);
+struct Roller(fn(f32) -> Specimen, f64);
 
-const BALL: Round = Round(|radius| Specimen::ball("body", radius), 0.4);
-const CYLINDER: Round = Round(|radius| Specimen::cylinder("body", radius, 1.0), 0.5);
+const BALL: Roller = Roller(|radius| Specimen::ball("body", radius), 0.4);
+const CYLINDER: Roller = Roller(|radius| Specimen::cylinder("body", radius, 1.0), 0.5);
 
 /// The speed after a time from rest on a slope.
 fn speed(k: f64, damping: f64, radians: f64, seconds: f64) -> f64 {
@@ -66,7 +66,7 @@ fn speed(k: f64, damping: f64, radians: f64, seconds: f64) -> f64 {
     }
 }
 
-fn roll_down(Round(make, k): Round, degrees: f64, settings: PhysicsSettings) -> Vec<Measurement> {
+fn roll_down(Roller(make, k): Roller, degrees: f64, settings: PhysicsSettings) -> Vec<Measurement> {
     const SECONDS: f64 = 1.0;
     const RADIUS: f32 = 0.5;
     let slope = slope("slope", degrees.to_radians(), Vec3::Z * 15.0, 60.0);
@@ -90,7 +90,7 @@ fn roll_down(Round(make, k): Round, degrees: f64, settings: PhysicsSettings) -> 
 
 /// A body that rolls along the table without slip.
 fn roll_along(
-    Round(make, k): Round,
+    Roller(make, k): Roller,
     radius: f32,
     start: f32,
     settings: PhysicsSettings,
