@@ -116,7 +116,7 @@ impl Plugin for PhysicsPlugin {
         app.init_resource::<Care>()
             .init_resource::<outside::WrittenBack>()
             .init_resource::<Quarantine>()
-            .init_resource::<impact::Approach>()
+            .init_resource::<impact::Onset>()
             .init_resource::<Seams>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
@@ -155,7 +155,7 @@ impl Plugin for PhysicsPlugin {
                         .after(PhysicsSet::SyncBackend)
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),
-                    impact::note_approach
+                    impact::note_onset
                         .run_if(impact::is_any_elastic)
                         .after(effort::configure_solver)
                         .before(PhysicsSet::StepSimulation)
@@ -204,6 +204,7 @@ impl Plugin for PhysicsPlugin {
             .rollback_component::<Carry>()
             .rollback_resource::<Care>()
             .rollback_resource::<Quarantine>()
+            .rollback_resource::<Seams>()
             .rollback_state::<PhysicsSnapshot>()
             .derived_component::<Twist>();
     }

@@ -16,7 +16,7 @@ pub struct PhysicsSettings {
     pub restitution: f32,
     /// Rate, in 1/s, at which rotations die away. Falling is not damped.
     pub angular_damping: f32,
-    /// Rate, in 1/s, at which the rotations of cylinders and spheres die away: their rolling resistance.
+    /// Rate, in 1/s, at which the rotations of cylinders, spheres and rings die away: their rolling resistance.
     pub rolling_damping: f32,
     /// Rate, in 1/s, at which the rotations of chain links die away, so that a chain comes to rest.
     pub link_damping: f32,

@@ -10,7 +10,7 @@ use crate::effort::bodies_of;
 
 /// A point in which two bodies touched in a step, or might have.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
+pub(super) struct Meeting {
     pub bodies: [Option<RigidBodyHandle>; 2],
     pub colliders: [ColliderHandle; 2],
     /// The point, from each body's centre of mass; in the world's frame for one that no force moves.
@@ -26,7 +26,7 @@ pub(super) fn touches(
     narrow_phase: &NarrowPhase,
     colliders: &ColliderSet,
     bodies: &RigidBodySet,
-) -> Vec<Touch> {
+) -> Vec<Meeting> {
     let mut pairs: Vec<_> = narrow_phase
         .contact_pairs()
         .filter(|pair| pair.has_any_active_contact())
@@ -49,7 +49,7 @@ pub(super) fn touches(
 fn touches_of(
     pair: &ContactPair,
     bodies: [Option<RigidBodyHandle>; 2],
-) -> impl Iterator<Item = Touch> {
+) -> impl Iterator<Item = Meeting> {
     let solved = pair.solver_manifolds().iter().filter(|manifold| {
         let flags = manifold.data.solver_flags;
         flags.contains(SolverFlags::COMPUTE_IMPULSES)
@@ -59,7 +59,7 @@ fn touches_of(
         points.filter_map(move |solved| {
             let number = solved.contact_indices()[0];
             let point = manifold.points.get(number as usize)?;
-            Some(Touch {
+            Some(Meeting {
                 bodies,
                 colliders: [pair.collider1, pair.collider2],
                 arms: [point.data.solver_dp1, point.data.solver_dp2].map(Vec3::as_dvec3),

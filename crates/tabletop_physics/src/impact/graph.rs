@@ -13,7 +13,7 @@ const MOST_SWEEPS: usize = 200;
 
 /// A body in an impact.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Body {
+pub(super) struct Striker {
     /// 1/kg.
     pub inverse_mass: f64,
     /// 1/(kg units²), in the axes of the world.
@@ -30,7 +30,7 @@ pub(super) struct Velocity {
 
 /// A point in which bodies touch.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Contact {
+pub(super) struct Collision {
     /// The bodies, by number. `None` moves by no force.
     pub bodies: [Option<usize>; 2],
     /// The point, from each body's centre of mass.
@@ -49,7 +49,7 @@ pub(super) struct Contact {
     pub rests_below: f64,
 }
 
-impl Contact {
+impl Collision {
     /// Speed at which the bodies approach each other here.
     pub fn approach(&self, velocities: &[Velocity]) -> f64 {
         let [first, second] = [0, 1].map(|side| self.speed(side, velocities));
@@ -79,7 +79,7 @@ impl Contact {
     }
 
     /// Mass, in kg, that an impulse here has to move.
-    fn mass(&self, bodies: &[Body]) -> f64 {
+    fn mass(&self, bodies: &[Striker]) -> f64 {
         let inverse = |side: usize| {
             self.bodies[side].map_or(0.0, |body| {
                 let arm = self.arms[side].cross(self.normal);
@@ -89,7 +89,7 @@ impl Contact {
         1.0 / (inverse(0) + inverse(1))
     }
 
-    fn push(&self, impulse: f64, bodies: &[Body], velocities: &mut [Velocity]) {
+    fn push(&self, impulse: f64, bodies: &[Striker], velocities: &mut [Velocity]) {
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             if let Some(body) = self.bodies[side] {
                 let impulse = sign * impulse * self.normal;
@@ -106,7 +106,7 @@ impl Contact {
 /// Whatever approaches collides at once and parts with its restitution; what approaches because of that collides next, and so on
 /// ("Reflections on Simultaneous Impact", Smith et al., 2012). So the corners of a face collide together, a row of balls hands on its speed, and
 /// energy and momentum are those of the textbook.
-pub(super) fn collide(bodies: &[Body], contacts: &[Contact]) -> (Vec<Velocity>, Vec<bool>) {
+pub(super) fn collide(bodies: &[Striker], contacts: &[Collision]) -> (Vec<Velocity>, Vec<bool>) {
     let mut velocities: Vec<_> = bodies.iter().map(|body| body.velocity).collect();
     let mut collided = vec![false; contacts.len()];
     for round in 0..MOST_ROUNDS {
@@ -137,8 +137,8 @@ pub(super) fn collide(bodies: &[Body], contacts: &[Contact]) -> (Vec<Velocity>, 
 
 /// Lets bodies part in some contacts, each given by its number, at least with these speeds. Returns the impulses.
 fn separate(
-    bodies: &[Body],
-    contacts: &[Contact],
+    bodies: &[Striker],
+    contacts: &[Collision],
     targets: &[(usize, f64)],
     velocities: &mut [Velocity],
 ) -> Vec<f64> {
@@ -159,8 +159,8 @@ fn separate(
 
 /// Lets bodies part in some contacts exactly with these speeds.
 pub(super) fn part(
-    bodies: &[Body],
-    contacts: &[Contact],
+    bodies: &[Striker],
+    contacts: &[Collision],
     targets: &[(usize, f64)],
     velocities: &mut [Velocity],
 ) {
@@ -170,8 +170,8 @@ pub(super) fn part(
 }
 
 fn sweep(
-    bodies: &[Body],
-    contacts: &[Contact],
+    bodies: &[Striker],
+    contacts: &[Collision],
     targets: &[(usize, f64)],
     velocities: &mut [Velocity],
     allowed: &mut dyn FnMut(usize, f64) -> f64,
@@ -199,8 +199,8 @@ fn sweep(
 mod tests {
     use super::*;
 
-    fn ball(speed: f64) -> Body {
-        Body {
+    fn ball(speed: f64) -> Striker {
+        Striker {
             inverse_mass: 1.0,
             inverse_inertia: DMat3::IDENTITY * 10.0,
             velocity: Velocity {
@@ -210,8 +210,8 @@ mod tests {
         }
     }
 
-    fn contact(bodies: [Option<usize>; 2], arms: [DVec3; 2], restitution: f64) -> Contact {
-        Contact {
+    fn contact(bodies: [Option<usize>; 2], arms: [DVec3; 2], restitution: f64) -> Collision {
+        Collision {
             bodies,
             arms,
             normal: DVec3::X,
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn the_corners_of_a_face_collide_together() {
-        let cube = Body {
+        let cube = Striker {
             inverse_inertia: DMat3::IDENTITY * 6.0,
             ..ball(10.0)
         };

@@ -18,10 +18,10 @@ use bevy_rapier3d::{
 
 use super::{
     Elasticity,
-    approach::Approach,
-    contacts::{Touch, touches},
+    contacts::{Meeting, touches},
     flight::{Flight, TICK, time_to_close},
-    graph::{Body, Contact, Velocity, collide, part},
+    graph::{Collision, Striker, Velocity, collide, part},
+    onset::Onset,
 };
 
 /// Gives the bodies that have met elastic ones in the step the velocities with which they part.
@@ -33,7 +33,7 @@ pub(crate) fn rebound(
         &mut RapierRigidBodySet,
     )>,
     surfaces: Query<&Elasticity>,
-    approach: Res<Approach>,
+    onset: Res<Onset>,
 ) {
     for (configuration, simulation, colliders, mut set) in &mut contexts {
         if !configuration.physics_pipeline_active {
@@ -45,8 +45,8 @@ pub(crate) fn rebound(
             surface.map_or(0.0, |elasticity| f64::from(elasticity.0))
         };
         let touches = touches(&simulation.narrow_phase, &colliders.colliders, &set.bodies);
-        let step = Step::new(&approach, &set.bodies, configuration.gravity.as_dvec3());
-        let impact = step.impact(&touches, elasticity);
+        let flights = Flights::new(&onset, &set.bodies, configuration.gravity.as_dvec3());
+        let impact = flights.impact(&touches, elasticity);
         for (handle, velocity) in impact.rebound(&set.bodies) {
             if let Some(body) = set.bodies.get_mut(handle) {
                 body.set_linvel(velocity.linear.as_vec3(), true);
@@ -57,7 +57,7 @@ pub(crate) fn rebound(
 }
 
 /// The bodies of a step, and their flights.
-struct Step<'a> {
+struct Flights<'a> {
     bodies: &'a rapier::prelude::RigidBodySet,
     handles: Vec<RigidBodyHandle>,
     flights: Vec<Flight>,
@@ -69,14 +69,14 @@ struct Step<'a> {
 #[derive(Default)]
 struct Impact {
     handles: Vec<RigidBodyHandle>,
-    bodies: Vec<Body>,
-    contacts: Vec<Contact>,
+    bodies: Vec<Striker>,
+    contacts: Vec<Collision>,
     lags: Vec<DVec3>,
 }
 
-impl<'a> Step<'a> {
-    fn new(approach: &Approach, bodies: &'a rapier::prelude::RigidBodySet, gravity: DVec3) -> Self {
-        let moved = approach.0.iter().filter_map(|(handle, velocity)| {
+impl<'a> Flights<'a> {
+    fn new(onset: &Onset, bodies: &'a rapier::prelude::RigidBodySet, gravity: DVec3) -> Self {
+        let moved = onset.0.iter().filter_map(|(handle, velocity)| {
             let flight = Flight::of(bodies.get(*handle)?, *velocity, gravity);
             Some((*handle, flight))
         });
@@ -91,7 +91,7 @@ impl<'a> Step<'a> {
     }
 
     /// The impact of bodies that meet in these touches.
-    fn impact(mut self, touches: &[Touch], elasticity: impl Fn(ColliderHandle) -> f64) -> Impact {
+    fn impact(mut self, touches: &[Meeting], elasticity: impl Fn(ColliderHandle) -> f64) -> Impact {
         let times: Vec<_> = touches.iter().map(|touch| self.time(touch)).collect();
         for (touch, time) in touches.iter().zip(&times) {
             for body in self.places_of(touch).into_iter().flatten() {
@@ -106,7 +106,7 @@ impl<'a> Step<'a> {
             let meets = time <= TICK + self.substep(touch);
             let later = if meets { (time - TICK).max(0.0) } else { 0.0 };
             let way = (self.approach(touch) + acceleration * TICK) * later;
-            Contact {
+            Collision {
                 bodies: self.places_of(touch),
                 arms: touch.arms,
                 normal: touch.normal,
@@ -128,7 +128,7 @@ impl<'a> Step<'a> {
             bodies.any(|body| reached.contains(body))
         });
         let bodies = self.handles.iter().map(|handle| &self.bodies[*handle]);
-        let bodies = bodies.zip(velocities).map(|(body, velocity)| Body {
+        let bodies = bodies.zip(velocities).map(|(body, velocity)| Striker {
             inverse_mass: f64::from(body.mass_properties().effective_inv_mass.x),
             inverse_inertia: inverse_inertia(body),
             velocity,
@@ -141,26 +141,26 @@ impl<'a> Step<'a> {
         }
     }
 
-    fn places_of(&self, touch: &Touch) -> [Option<usize>; 2] {
+    fn places_of(&self, touch: &Meeting) -> [Option<usize>; 2] {
         let place = |handle: RigidBodyHandle| self.places.get(&handle.into_raw_parts().0).copied();
         touch.bodies.map(|body| place(body?))
     }
 
     /// The time, in s, after which two bodies meet, if only gravity acts; infinite if they do not.
-    fn time(&self, touch: &Touch) -> f64 {
+    fn time(&self, touch: &Meeting) -> f64 {
         let gap = touch.gap.max(0.0);
         time_to_close(gap, self.approach(touch), self.acceleration(touch))
     }
 
     /// Duration of the longer sub-step of two bodies, in s.
-    fn substep(&self, touch: &Touch) -> f64 {
+    fn substep(&self, touch: &Meeting) -> f64 {
         let bodies = self.places_of(touch).into_iter().flatten();
         let substeps = bodies.map(|body| self.flights[body].substep);
         substeps.fold(0.0, f64::max)
     }
 
     /// The speed of approach at the beginning of the step.
-    fn approach(&self, touch: &Touch) -> f64 {
+    fn approach(&self, touch: &Meeting) -> f64 {
         let speed = |side: usize| {
             self.places_of(touch)[side].map_or(0.0, |body| {
                 let Velocity { linear, angular } = self.flights[body].velocity;
@@ -171,7 +171,7 @@ impl<'a> Step<'a> {
     }
 
     /// The acceleration with which gravity lets two bodies approach.
-    fn acceleration(&self, touch: &Touch) -> f64 {
+    fn acceleration(&self, touch: &Meeting) -> f64 {
         let [first, second] = self
             .places_of(touch)
             .map(|body| body.map_or(DVec3::ZERO, |body| self.flights[body].acceleration));
@@ -179,7 +179,7 @@ impl<'a> Step<'a> {
     }
 
     /// The speed at which bodies that no force moves approach.
-    fn drive(&self, touch: &Touch) -> f64 {
+    fn drive(&self, touch: &Meeting) -> f64 {
         let speed = |side: usize| {
             let is_moved = self.places_of(touch)[side].is_some();
             let body = touch.bodies[side].filter(|_| !is_moved);
@@ -226,7 +226,7 @@ impl Impact {
 }
 
 /// The bodies that impacts reach: those that bounce, and all that touch them.
-fn reached(contacts: &[Contact], velocities: &[Velocity]) -> BTreeSet<usize> {
+fn reached(contacts: &[Collision], velocities: &[Velocity]) -> BTreeSet<usize> {
     let mut neighbours = vec![Vec::new(); velocities.len()];
     for contact in contacts {
         if let [Some(first), Some(second)] = contact.bodies {

@@ -92,7 +92,7 @@ impl Slab {
 }
 
 /// The seams of the fixed objects.
-#[derive(Resource, Default)]
+#[derive(Resource, Clone, Default)]
 pub(crate) struct Seams {
     fixed: Vec<(rapier::ColliderHandle, Vec<Slab>)>,
     /// The slabs that lie flush beside those of a collider, by the number of its handle.
@@ -101,13 +101,13 @@ pub(crate) struct Seams {
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-pub(crate) struct Context {
+pub(crate) struct FixedBodies {
     bodies: &'static RapierRigidBodySet,
     colliders: &'static mut RapierContextColliders,
 }
 
 /// Finds the seams anew if a fixed object has come, gone or moved, and lets Rapier ask about the contacts of those that have one.
-pub(crate) fn find_seams(mut contexts: Query<Context>, mut seams: ResMut<Seams>) {
+pub(crate) fn find_seams(mut contexts: Query<FixedBodies>, mut seams: ResMut<Seams>) {
     let Ok(mut context) = contexts.single_mut() else {
         return;
     };

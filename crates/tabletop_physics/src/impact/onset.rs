@@ -10,23 +10,23 @@ use super::graph::Velocity;
 
 /// The velocities of the awake bodies that forces move, at the beginning of the step, in the order of their handles.
 #[derive(Resource, Default)]
-pub(crate) struct Approach(pub(super) Vec<(RigidBodyHandle, Velocity)>);
+pub(crate) struct Onset(pub(super) Vec<(RigidBodyHandle, Velocity)>);
 
 /// Notes the velocities before a step.
-pub(crate) fn note_approach(
+pub(crate) fn note_onset(
     contexts: Query<(&RapierContextSimulation, &RapierRigidBodySet)>,
-    mut approach: ResMut<Approach>,
+    mut onset: ResMut<Onset>,
 ) {
-    approach.0.clear();
+    onset.0.clear();
     for (simulation, bodies) in &contexts {
         let awake = simulation.islands.active_bodies();
         let awake = awake.filter_map(|handle| Some((handle, bodies.bodies.get(handle)?)));
         let moved = awake.filter(|(_, body)| body.is_dynamic());
         let moved = moved.map(|(handle, body)| (handle, Velocity::of(body)));
-        approach.0.extend(moved);
+        onset.0.extend(moved);
     }
     // Rapier's own order depends on undone segments.
-    approach
+    onset
         .0
         .sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
 }
