@@ -135,15 +135,6 @@ fn a_row_of_elastic_balls_hands_on_its_speed() {
 }
 
 #[test]
-fn a_slow_block_goes_on() {
-    let mut app = world(0.0);
-    let velocity = Vec3::X * 0.3;
-    let slow = add(&mut app, Vec3::Z * 0.5, 1.0, block(Vec3::ONE), velocity);
-    app.step(180);
-    assert!((twist(&app, slow).linear.x - 0.3).abs() < 1e-3);
-}
-
-#[test]
 fn a_small_ball_spins_as_fast_as_it_rolls() {
     let mut app = world(0.0);
     let ball = Shape::Sphere {
