@@ -5,7 +5,7 @@ mod linear;
 use std::ops::Range;
 
 use bevy::{
-    math::{Mat3A, Vec2, Vec3, Vec3A},
+    math::{Mat3, Vec2, Vec3, Vec4},
     prelude::Quat,
 };
 use tabletop_core::{HandCamera, HeadCamera, Light, Table};
@@ -136,12 +136,22 @@ impl PinholeView {
         self.pixel_of_local(self.axes.inverse() * point)
     }
 
-    /// The pixels of points given in the frame of a body.
-    pub fn pixels_of(&self, body: Pose) -> impl Fn(Vec3A) -> Option<Vec2> {
+    /// The pixels, as columns and rows, of points given in the frame of a body, four at a time. They are NaN for points that are not in front of
+    /// the camera.
+    pub fn pixels_of(&self, body: Pose) -> impl Fn([Vec4; 3]) -> [Vec4; 2] {
         let to_camera = self.axes.inverse();
-        let axes = Mat3A::from_quat(to_camera * body.rotation);
-        let origin = Vec3A::from(to_camera * (body.location - self.eye));
-        move |point| self.pixel_of_local((axes * point + origin).into())
+        let turned = FourTurned::by(to_camera * body.rotation);
+        let origin = to_camera * (body.location - self.eye);
+        let origin = origin.to_array().map(Vec4::splat);
+        let [center, pixel] = [self.center, self.pixel].map(|it| it.to_array().map(Vec4::splat));
+        move |points| {
+            let [x, y, z] = turned.apply(points);
+            let depth = -(z + origin[2]);
+            let column = (x + origin[0]) / (depth * pixel[0]) + center[0];
+            let row = -(y + origin[1]) / (depth * pixel[1]) + center[1];
+            let is_in_front = depth.cmpge(Vec4::splat(NEAR));
+            [column, row].map(|at| Vec4::select(is_in_front, at, Vec4::NAN))
+        }
     }
 
     /// The pixel of a point given in the frame of the camera.
@@ -163,10 +173,11 @@ impl PinholeView {
         let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for corner in seen {
             let Some(corner) = corner else {
-                return Some(Window {
+                let all = Window {
                     columns: 0..self.width,
                     rows: 0..self.height,
-                });
+                };
+                return (!self.is_beside(corners)).then_some(all);
             };
             least = least.min(corner);
             most = most.max(corner);
@@ -177,9 +188,52 @@ impl PinholeView {
         };
         (!window.columns.is_empty() && !window.rows.is_empty()).then_some(window)
     }
+
+    /// True if all of these points, given relative to the eye, lie beyond the same edge of the picture, in front of the camera or behind it.
+    pub fn is_beside(&self, points: &[Vec3]) -> bool {
+        /// Reach of the outermost samples beyond the middle of the outermost pixels, with room for rounding.
+        const REACH: f32 = 1.0;
+        let edge = (self.center + REACH) * self.pixel;
+        let to_camera = self.axes.inverse();
+        let beyond = points.iter().map(|&point| {
+            let point = to_camera * point;
+            let (side, edge) = (point.truncate(), edge * -point.z);
+            let [right, left] = [side.cmpgt(edge), (-side).cmpgt(edge)];
+            right.bitmask() | left.bitmask() << 2
+        });
+        beyond.fold(0b1111, |common, beyond| common & beyond) != 0
+    }
+}
+
+/// A rotation of vectors, four at a time, given by their parts along X, Y and Z.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FourTurned([[Vec4; 3]; 3]);
+
+impl FourTurned {
+    pub fn by(rotation: Quat) -> Self {
+        let axes = Mat3::from_quat(rotation).to_cols_array_2d();
+        Self(axes.map(|axis| axis.map(Vec4::splat)))
+    }
+
+    #[inline]
+    pub fn apply(&self, [x, y, z]: [Vec4; 3]) -> [Vec4; 3] {
+        let [along_x, along_y, along_z] = self.0;
+        std::array::from_fn(|i| x * along_x[i] + y * along_y[i] + z * along_z[i])
+    }
 }
 
 impl Window {
+    /// The window around two.
+    pub fn joined(&self, other: &Self) -> Self {
+        let around = |one: &Range<u32>, other: &Range<u32>| {
+            one.start.min(other.start)..one.end.max(other.end)
+        };
+        Self {
+            columns: around(&self.columns, &other.columns),
+            rows: around(&self.rows, &other.rows),
+        }
+    }
+
     /// The columns as indices.
     pub fn columns(&self) -> Range<usize> {
         self.columns.start as usize..self.columns.end as usize
@@ -240,6 +294,54 @@ mod tests {
         };
         let edge = head(square).pixel_of(center + camera.pose.rotation * (Vec3::X * 5.7735));
         assert!((edge.unwrap() - Vec2::new(199.5, 74.5)).length() < 1e-2);
+    }
+
+    #[test]
+    fn a_box_around_the_camera_is_seen_and_one_beside_its_view_is_not() {
+        let camera = head(HeadCamera::default());
+        let view = PinholeView::of(&camera);
+        let at = |middle: Vec3, half: Vec3| {
+            let corners: [Vec3; 8] = std::array::from_fn(|corner| {
+                let side = |axis: usize| [-1.0, 1.0][corner >> axis & 1];
+                let corner = middle + half * Vec3::new(side(0), side(1), side(2));
+                camera.pose.rotation * corner
+            });
+            view.window_of(&corners).is_some()
+        };
+        // From behind the camera to 8 units in front of it.
+        let half = Vec3::new(0.5, 0.5, 5.0);
+        assert!(at(Vec3::NEG_Z * 3.0, half));
+        for side in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y] {
+            assert!(!at(side * 15.0 + Vec3::NEG_Z * 3.0, half), "{side}");
+            // Its far end reaches into the picture.
+            assert!(at(side * 2.0 + Vec3::NEG_Z * 3.0, half), "{side}");
+        }
+        // Its corners are beyond different edges.
+        assert!(at(Vec3::NEG_Z * 3.0, Vec3::new(50.0, 0.5, 5.0)));
+    }
+
+    #[test]
+    fn four_pixels_are_those_of_each() {
+        let camera = head(HeadCamera::default());
+        let view = PinholeView::of(&camera);
+        let body = Pose::new(Vec3::new(0.5, -2.0, 1.0), Quat::from_rotation_y(0.7));
+        let points = [
+            Vec3::ZERO,
+            Vec3::new(1.0, 2.0, -0.5),
+            Vec3::new(-3.0, 0.2, 0.1),
+            body.inverse() * (view.eye - view.rays.through(0.0, 0.0)),
+        ];
+        let part = |axis: usize| Vec4::from_array(points.map(|point| point[axis]));
+        let [columns, rows] = view.pixels_of(body)([part(0), part(1), part(2)]);
+        for (lane, point) in points.into_iter().enumerate() {
+            match camera.pixel_of(body * point) {
+                Some(pixel) => {
+                    assert!((pixel - Vec2::new(columns[lane], rows[lane])).length() < 1e-3);
+                }
+                None => assert!(columns[lane].is_nan() && rows[lane].is_nan()),
+            }
+        }
+        assert!(columns[3].is_nan() && !columns[2].is_nan());
     }
 
     #[test]

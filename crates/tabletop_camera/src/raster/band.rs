@@ -191,9 +191,11 @@ impl Band {
         for triangle in frame.visible.triangles_in_band(rows.start / ROWS as u32) {
             let first = triangle.rows.start.max(rows.start);
             let end = triangle.rows.end.min(rows.end);
-            for row in (first..end).step_by(4) {
+            let mut row = first;
+            while row < end {
                 let four = row..end.min(row + 4);
                 triangle.draw_centers(four, rows.start, &mut self.centers);
+                row += 4;
             }
             if frame.is_smooth {
                 for row in first..end {

@@ -91,9 +91,9 @@ impl CenterSamples {
         let [base, step] = [inverse_depth.at(0.0), inverse_depth.step].map(Vec4::splat);
         let surface = Vec4::splat(f32::from_bits(surface));
         let mut x = ends[0] + LANES;
-        for first in (column(start)..column(end)).step_by(4) {
+        let mut first = row * self.width + column(start);
+        while x.x < end {
             // Four samples at once, among them some behind the columns. Their surfaces are bits only.
-            let first = row * self.width + first;
             let (Some(seen_inverse_depth), Some(seen_surface)) = (
                 self.inverse_depth[first..].first_chunk_mut::<4>(),
                 self.surface[first..].first_chunk_mut::<4>(),
@@ -109,6 +109,7 @@ impl CenterSamples {
                 surface,
             );
             x += 4.0;
+            first += 4;
         }
     }
 }

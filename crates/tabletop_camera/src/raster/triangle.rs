@@ -53,6 +53,7 @@ impl Triangle {
     }
 
     /// Draws it into the centre samples that see nothing nearer, in up to four rows.
+    #[inline]
     pub fn draw_centers(&self, rows: Range<u32>, first_row: u32, samples: &mut CenterSamples) {
         const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
         let width = samples.width();

@@ -2,11 +2,11 @@
 
 use std::{ops::Range, sync::Arc};
 
-use bevy::math::{Mat3, Mat3A, Vec2, Vec3, Vec3A};
+use bevy::math::{Mat3, Vec2, Vec3, Vec4};
 use tabletop_geometry::Solid;
 
 use crate::{
-    camera::{Linear, PinholeView, Window},
+    camera::{FourTurned, Linear, PinholeView, Window},
     raster::{
         bounds::{corners_of_box, corners_of_solid},
         edge_table::EdgeTable,
@@ -44,8 +44,8 @@ pub(crate) struct VisibleSurfaces {
     edge_table: EdgeTable,
     /// Number of patches.
     patch_count: u32,
-    /// The vertices of a figure.
-    vertices: Vec<VisibleCorner>,
+    /// The vertices of a figure, four by four.
+    vertices: Vec<VisibleFour>,
 }
 
 /// A figure in the picture.
@@ -62,11 +62,20 @@ struct ProjectedFigure {
     patches: u32,
 }
 
+/// Four vertices in the picture, each a lane.
+#[derive(Clone, Copy, Debug)]
+struct VisibleFour {
+    /// Their columns and rows; NaN if they are not in front of the camera.
+    pixels: [[f32; 4]; 2],
+    /// Their locations relative to the eye, along X, Y and Z.
+    places: [[f32; 4]; 3],
+    /// The shares of the triangles' colours that they show.
+    shares: [f32; 4],
+}
+
 /// A corner of a triangle in the picture.
 #[derive(Clone, Copy, Debug)]
 struct VisibleCorner {
-    /// Its pixel.
-    pixel: Option<Vec2>,
     /// Its location relative to the eye.
     place: Vec3,
     /// The share of the triangle's colour that it shows.
@@ -120,9 +129,7 @@ impl VisibleSurfaces {
         for drawn in figures.skip(unchanged) {
             let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
             let window = view.window_of(&corners);
-            if let Some(window) = &window {
-                self.add_figure(drawn, view, window);
-            }
+            let window = window.and_then(|window| self.add_figure(drawn, view, &window));
             self.figures.push(ProjectedFigure {
                 facets: Arc::clone(&drawn.facets),
                 pose: drawn.pose_bits(),
@@ -221,37 +228,36 @@ impl VisibleSurfaces {
         self.add_surface(RasterSurface::curved(drawn, curve, &self.lighting));
     }
 
-    fn add_figure(&mut self, drawn: &DrawnFigure, view: &PinholeView, window: &Window) {
+    /// Adds the triangles of a figure that may be seen in a window. Returns the window around them.
+    fn add_figure(
+        &mut self,
+        drawn: &DrawnFigure,
+        view: &PinholeView,
+        window: &Window,
+    ) -> Option<Window> {
         let facets = &*drawn.facets;
-        let axes = Mat3::from_quat(drawn.pose.rotation);
-        let pixel_of = view.pixels_of(drawn.pose);
-        self.vertices.clear();
-        let (turned, location) = (Mat3A::from(axes), Vec3A::from(drawn.pose.location));
-        let view_eye = Vec3A::from(view.eye);
+        self.find_vertices(drawn, view);
         let lighting = self.lighting;
-        self.vertices
-            .extend(facets.vertices.iter().map(|vertex| VisibleCorner {
-                pixel: pixel_of(vertex.position),
-                place: (location + turned * vertex.position - view_eye).into(),
-                share: lighting.clamp(lighting.share((turned * vertex.normal).into())),
-            }));
+        let axes = Mat3::from_quat(drawn.pose.rotation);
         let eye = drawn.pose.inverse() * view.eye;
+        let mut seen: Option<Window> = None;
         for facet in &facets.triangles {
             if facet.normal.dot(eye) - facet.height < EDGE_ON {
                 continue;
             }
             let [a, b, c] = facet.corners;
-            let corners = [
-                self.vertices[a as usize],
-                self.vertices[b as usize],
-                self.vertices[c as usize],
-            ];
-            let Some(rows) = rows_of(&corners, view, window) else {
+            let pixels = [self.pixel(a), self.pixel(b), self.pixel(c)];
+            let Some(own) = window_around(pixels, view, window) else {
                 continue;
             };
+            let corners = [self.corner(a), self.corner(b), self.corner(c)];
             let places = [corners[0].place, corners[1].place, corners[2].place];
+            if pixels.iter().any(|pixel| pixel.is_nan()) && view.is_beside(&places) {
+                continue;
+            }
             let normal = axes * facet.normal;
             let surface = self.surfaces.len() as u32;
+            let rows = own.rows.clone();
             self.triangles
                 .push(Triangle::seen(view, places, normal, rows, surface));
             self.surfaces.push(RasterSurface::gouraud(
@@ -260,8 +266,56 @@ impl VisibleSurfaces {
                 share_by_depth(view, &corners, normal),
             ));
             self.patches.push(self.patch_count + facet.patch);
+            seen = Some(seen.map_or(own.clone(), |seen| seen.joined(&own)));
         }
         self.patch_count += facets.patches;
+        seen
+    }
+
+    /// Finds the vertices of a figure in the picture.
+    fn find_vertices(&mut self, drawn: &DrawnFigure, view: &PinholeView) {
+        let turned = FourTurned::by(drawn.pose.rotation);
+        let [location, eye] =
+            [drawn.pose.location, view.eye].map(|at| at.to_array().map(Vec4::splat));
+        let pixels_of = view.pixels_of(drawn.pose);
+        self.vertices.clear();
+        let fours = drawn.facets.vertices.iter().map(|four| {
+            let mut places = turned.apply(four.positions);
+            for (axis, place) in places.iter_mut().enumerate() {
+                *place = *place + location[axis] - eye[axis];
+            }
+            let shares = self.lighting.four_shares(turned.apply(four.normals));
+            VisibleFour {
+                pixels: pixels_of(four.positions).map(|at| at.to_array()),
+                places: places.map(|at| at.to_array()),
+                shares: shares.to_array(),
+            }
+        });
+        self.vertices.extend(fours);
+    }
+
+    /// The pixel of a vertex of the figure whose vertices were found last; NaN if it is not in front of the camera.
+    #[inline]
+    fn pixel(&self, vertex: u32) -> Vec2 {
+        let (four, lane) = self.four_with(vertex);
+        let [column, row] = &four.pixels;
+        Vec2::new(column[lane], row[lane])
+    }
+
+    /// A vertex of that figure as the corner of a triangle.
+    #[inline]
+    fn corner(&self, vertex: u32) -> VisibleCorner {
+        let (four, lane) = self.four_with(vertex);
+        let [x, y, z] = &four.places;
+        VisibleCorner {
+            place: Vec3::new(x[lane], y[lane], z[lane]),
+            share: four.shares[lane],
+        }
+    }
+
+    #[inline]
+    fn four_with(&self, vertex: u32) -> (&VisibleFour, usize) {
+        (&self.vertices[vertex as usize / 4], vertex as usize % 4)
     }
 
     /// Adds a surface that is a patch of its own.
@@ -298,26 +352,28 @@ fn rows_in(window: Option<&Window>) -> Range<u32> {
     window.map_or(0..0, |window| window.rows.clone())
 }
 
-/// The rows in which a triangle with these corners may be seen; `None` if no sample lies in it.
-fn rows_of(
-    corners: &[VisibleCorner; 3],
-    view: &PinholeView,
-    window: &Window,
-) -> Option<Range<u32>> {
+/// The window in which a triangle may be seen whose corners have these pixels; `None` if no sample lies in it. If a corner is not in front of the
+/// camera, that is the window of the whole figure.
+fn window_around(corners: [Vec2; 3], view: &PinholeView, figure: &Window) -> Option<Window> {
     /// Reach of a pixel's outermost samples, with a bit for rounding.
     const REACH: f32 = 0.375 + 0.01;
     let [a, b, c] = corners;
-    let (Some(a), Some(b), Some(c)) = (a.pixel, b.pixel, c.pixel) else {
-        return (!window.rows.is_empty()).then(|| window.rows.clone());
-    };
+    if a.is_nan() || b.is_nan() || c.is_nan() {
+        return (!figure.rows.is_empty()).then(|| figure.clone());
+    }
     let (least, most) = (a.min(b).min(c) - REACH, a.max(b).max(c) + REACH);
     let between = |least, most, count: u32| {
         let first = first_column(least, count as usize) as u32;
         let end = first_column(most, count as usize) as u32;
         (first < end).then_some(first..end)
     };
-    between(least.x, most.x, view.width)?;
-    between(least.y, most.y, view.height)
+    let columns = between(least.x, most.x, view.width)?;
+    let rows = between(least.y, most.y, view.height)?;
+    Some(Window {
+        // A column more on both sides, for rounding errors.
+        columns: columns.start.saturating_sub(1)..(columns.end + 1).min(view.width),
+        rows,
+    })
 }
 
 /// The share of its colour that a triangle shows, divided by the depth: given at the corners, and linear in between.

@@ -1,6 +1,6 @@
 //! Facets: surfaces of triangles, prepared for drawing.
 
-use bevy::math::{Vec3, Vec3A};
+use bevy::math::{Vec3, Vec4};
 use tabletop_geometry::Triangles;
 
 use crate::color::scaled_to_bytes;
@@ -8,7 +8,8 @@ use crate::color::scaled_to_bytes;
 /// A surface of triangles, prepared for drawing. Each triangle has the colour of its first corner.
 #[derive(Clone, Debug, Default)]
 pub struct Facets {
-    pub(crate) vertices: Vec<Vertex>,
+    /// The vertices, four by four; behind the last one there are zeros.
+    pub(crate) vertices: Vec<FourVertices>,
     pub(crate) triangles: Vec<Facet>,
     /// The least and the largest coordinates.
     pub(crate) bounds: [Vec3; 2],
@@ -16,11 +17,13 @@ pub struct Facets {
     pub(crate) patches: u32,
 }
 
-/// A vertex in the frame of the figure.
+/// Four vertices in the frame of the figure, each a lane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex {
-    pub position: Vec3A,
-    pub normal: Vec3A,
+pub(crate) struct FourVertices {
+    /// Their locations along X, Y and Z.
+    pub positions: [Vec4; 3],
+    /// Their normals along X, Y and Z.
+    pub normals: [Vec4; 3],
 }
 
 /// A triangle.
@@ -52,24 +55,21 @@ impl Facets {
 impl From<&Triangles> for Facets {
     /// Leaves out triangles that cannot be drawn: those without area, without corners, or too far away.
     fn from(surface: &Triangles) -> Self {
-        let vertices: Vec<_> = surface
-            .positions
-            .iter()
-            .zip(&surface.normals)
-            .map(|(&position, &normal)| Vertex {
-                position: position.into(),
-                normal: normal.into(),
-            })
-            .collect();
-        let mut patch_of = Patches::new(vertices.len());
+        let count = surface.positions.len().min(surface.normals.len());
+        let positions = &surface.positions[..count];
+        let fours = positions.chunks(4).zip(surface.normals.chunks(4));
+        let vertices = fours.map(|(positions, normals)| FourVertices {
+            positions: lanes(positions),
+            normals: lanes(normals),
+        });
+        let mut patch_of = Patches::new(count);
         let mut bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let mut triangles = Vec::with_capacity(surface.indices.len());
         for &corners in &surface.indices {
             let Some(color) = surface.colors.get(corners[0] as usize) else {
                 continue;
             };
-            let [Some(a), Some(b), Some(c)] =
-                corners.map(|i| Some(Vec3::from(vertices.get(i as usize)?.position)))
+            let [Some(a), Some(b), Some(c)] = corners.map(|i| positions.get(i as usize).copied())
             else {
                 continue;
             };
@@ -91,12 +91,20 @@ impl From<&Triangles> for Facets {
         }
         let patches = patch_of.number(&mut triangles);
         Self {
-            vertices,
+            vertices: vertices.collect(),
             triangles,
             bounds,
             patches,
         }
     }
+}
+
+/// Up to four vectors by their parts along X, Y and Z, each a lane.
+fn lanes(vectors: &[Vec3]) -> [Vec4; 3] {
+    std::array::from_fn(|axis| {
+        let part = |lane: usize| vectors.get(lane).map_or(0.0, |vector| vector[axis]);
+        Vec4::new(part(0), part(1), part(2), part(3))
+    })
 }
 
 /// A partition of vertices into groups.
