@@ -1,6 +1,7 @@
 //! Scenes, at which cameras look.
 
 mod facets;
+mod shared_facets;
 
 use std::sync::Arc;
 
@@ -9,6 +10,7 @@ use tabletop_core::Table;
 use tabletop_geometry::{Pose, Primitive, Rgb, Solid};
 
 pub use facets::Facets;
+pub(crate) use shared_facets::facets_of;
 
 /// A scene for a camera.
 #[derive(Clone, Debug, Default)]

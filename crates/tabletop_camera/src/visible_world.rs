@@ -6,7 +6,7 @@ use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{CarriesHeadCamera, Figure, Markers, ObjectIndex, ObjectSpec, Table};
 use tabletop_geometry::Primitive;
 
-use crate::{DrawnFigure, DrawnSolid, Facets, Scene};
+use crate::{DrawnFigure, DrawnSolid, Facets, Scene, scene::facets_of};
 
 /// The drawn solids of an object, in its own frame, computed once.
 #[derive(Component, Debug)]
@@ -75,7 +75,7 @@ pub(crate) fn prepare_figure(
     let (figure, before) = figures.get(insert.entity)?;
     let order = before.map_or(count.0, |drawn| drawn.order);
     count.0 = count.0.max(order + 1);
-    let facets = Facets::from(&*figure.coarse).into();
+    let facets = facets_of(&figure.coarse);
     commands
         .entity(insert.entity)
         .try_insert(DrawnFacets { facets, order });

@@ -43,7 +43,7 @@ pub(crate) fn show_figures(
     }
     if show.is_some() && figures.bodies.is_empty() {
         let make = || figures_of(&description, &articulation);
-        figures.bodies = description.figures.get_or_make(make).to_vec();
+        figures.bodies = description.figures.bodies(make).to_vec();
     }
     for (number, &part) in parts.0.iter().enumerate() {
         let body = &articulation.bodies[number];
@@ -56,7 +56,8 @@ pub(crate) fn show_figures(
         };
         let is_new = figures.shown.is_none_or(|(_, before)| before != first);
         let figure = if is_screen {
-            screen(&description, &body.id, face)
+            let make = || screen(&description, &body.id, face);
+            description.figures.screen(face, make)
         } else if is_new {
             figures.bodies[number].clone()
         } else {
