@@ -1,5 +1,7 @@
 //! Cameras before a world, and their pictures.
 
+use std::cell::RefCell;
+
 use bevy::prelude::*;
 use tabletop_camera::{Camera, FiguresSeen, Rasterizer, Scene, VisibleWorld};
 use tabletop_core::{HandCamera, HeadCamera, ObjectSpec, Picture, Table};
@@ -36,10 +38,16 @@ pub struct Studio {
     cameras: Vec<FilmCamera>,
     /// For each camera, the hand camera that it is.
     hands: Vec<Option<HandCamera>>,
+    /// One for each camera; none if those of the thread draw.
     rasterizers: Vec<Rasterizer>,
     scene: Scene,
     shown: Vec<Entity>,
     shots: Vec<Shot>,
+}
+
+thread_local! {
+    /// For each camera of a studio that draws alone, the memory of its pictures: too large for each of many worlds to have its own.
+    static OF_THREAD: RefCell<Vec<Rasterizer>> = const { RefCell::new(Vec::new()) };
 }
 
 impl Studio {
@@ -87,7 +95,7 @@ impl Studio {
     /// The same cameras, whose pictures are drawn on the thread of the caller alone.
     #[must_use]
     pub fn alone(mut self) -> Self {
-        self.rasterizers.fill(Rasterizer::alone());
+        self.rasterizers = Vec::new();
         self
     }
 
@@ -96,16 +104,27 @@ impl Studio {
     /// # Errors
     /// [`FilmError::Failed`] if the world is no simulator's.
     pub fn shoot(&mut self, world: &mut World) -> Result<&[Shot], FilmError> {
-        world
-            .run_system_cached_with(draw, self)
-            .map_err(|error| FilmError::Failed(error.to_string()))?;
+        let drawn = match self.rasterizers.is_empty() {
+            true => OF_THREAD.with_borrow_mut(|rasterizers| {
+                let count = rasterizers.len().max(self.cameras.len());
+                rasterizers.resize_with(count, Rasterizer::alone);
+                world.run_system_cached_with(draw, (&mut *self, rasterizers))
+            }),
+            false => {
+                let mut own = std::mem::take(&mut self.rasterizers);
+                let drawn = world.run_system_cached_with(draw, (&mut *self, &mut own));
+                self.rasterizers = own;
+                drawn
+            }
+        };
+        drawn.map_err(|error| FilmError::Failed(error.to_string()))?;
         Ok(&self.shots)
     }
 }
 
 /// Draws the present world for each camera.
 fn draw(
-    InMut(studio): InMut<Studio>,
+    (InMut(studio), InMut(rasterizers)): (InMut<Studio>, InMut<Vec<Rasterizer>>),
     world: VisibleWorld,
     head: Res<HeadCamera>,
     carrier: HandCameraCarrier,
@@ -150,7 +169,7 @@ fn draw(
             continue;
         };
         world.draw(seen, &mut studio.scene, &mut studio.shown);
-        studio.rasterizers[number].draw(&studio.scene, &view, &mut shot.picture);
+        rasterizers[number].draw(&studio.scene, &view, &mut shot.picture);
         shot.things = studio.shown.iter().map(thing).collect();
     }
 }

@@ -8,6 +8,7 @@ use tabletop_core::Random;
 use tabletop_environment::{
     ActionSpace, Autoreset, EnvironmentOptions, TaskEnvironment, VectorEnvironment,
 };
+use tabletop_film::FilmCamera;
 
 use crate::{action, bits, options, task};
 
@@ -139,6 +140,44 @@ fn environments_that_are_received_as_they_are_ready_show_the_same() {
         let mut state = vec![0.0; numbers];
         alone.observe_state(&mut state);
         assert_eq!(state, states[number * numbers..][..numbers]);
+    }
+}
+
+#[test]
+fn environments_that_take_turns_on_a_thread_see_what_each_sees_alone() {
+    let cases = [("StackThree", 1, [32, 24]), ("StackThree", 2, [20, 30])];
+    let make = |(name, seed, [width, height]): (&str, u64, [u32; 2])| {
+        let options = EnvironmentOptions {
+            camera: FilmCamera::head(width, height),
+            ..options(ActionSpace::JointVelocity)
+        };
+        let mut environment = TaskEnvironment::new(task(name), &options).unwrap();
+        environment.reset(Some(seed)).unwrap();
+        environment
+    };
+    // Every other step nothing moves, so that what is kept of pictures is used.
+    let step = |environment: &mut TaskEnvironment, number: u8| {
+        let speed = f32::from(number / 2 % 2);
+        environment
+            .step(&vec![speed; environment.action_len()])
+            .unwrap();
+        bits(environment)
+    };
+    let mut together = cases.map(make);
+    let mut seen = [Vec::new(), Vec::new()];
+    for number in 0..12 {
+        for (environment, seen) in together.iter_mut().zip(&mut seen) {
+            seen.push(step(environment, number));
+        }
+    }
+    for (case, seen) in cases.into_iter().zip(seen) {
+        let alone = std::thread::spawn(move || {
+            let mut environment = make(case);
+            (0..12)
+                .map(|number| step(&mut environment, number))
+                .collect::<Vec<_>>()
+        });
+        assert!(alone.join().unwrap() == seen, "{case:?}");
     }
 }
 
