@@ -1,12 +1,13 @@
 //! Benchmark of many environments in one process: their steps a second on all cores, and the memory that each takes.
 //!
-//! `cargo bench --bench many_worlds` prints this for 1 to 1,024 worlds with both arms moving over three blocks, with and without
-//! pictures of 128 x 128. `-- 256` measures only so many.
+//! `cargo bench --bench many_worlds` prints this for 1 to 1,024 worlds with both arms moving over three blocks, with pictures of
+//! 128 x 128 and without. `-- 256 rgb` and `-- 256 state` measure only this.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 #![expect(clippy::unwrap_used, reason = "a benchmark may panic")]
 
 use std::{
-    fs,
+    env, fs,
+    process::Command,
     time::{Duration, Instant},
 };
 
@@ -21,24 +22,29 @@ const COUNTS: [usize; 4] = [1, 16, 256, 1024];
 const TIME: Duration = Duration::from_secs(4);
 
 fn main() {
-    let named = std::env::args().skip(1).find_map(|arg| arg.parse().ok());
-    let counts = named.map_or(COUNTS.to_vec(), |count| vec![count]);
-    // What all worlds share is there before the first is counted.
-    drop(worlds(1, ObservationSpace::Rgb));
-    println!("worlds  with pictures  MB a world   without  MB a world   steps a second");
-    for count in counts {
-        let [pictures, states] = [ObservationSpace::Rgb, ObservationSpace::State].map(|observed| {
-            let before = resident_bytes();
-            let mut many = worlds(count, observed);
-            let rate = steps_a_second(&mut many);
-            let grown = resident_bytes().saturating_sub(before) as f64 / count as f64;
-            (rate, grown / 1e6)
-        });
-        println!(
-            "{count:6}  {:13.0}  {:10.2}  {:8.0}  {:10.2}",
-            pictures.0, pictures.1, states.0, states.1
-        );
-    }
+    let arguments: Vec<_> = env::args().skip(1).filter(|it| it != "--bench").collect();
+    let [count, observed] = &arguments[..] else {
+        println!("worlds  observed  steps a second  MB a world after the first");
+        for count in COUNTS {
+            for observed in [ObservationSpace::Rgb, ObservationSpace::State] {
+                // In a process of its own, so that no memory is left of others.
+                let mut process = Command::new(env::current_exe().unwrap());
+                let arguments = [&count.to_string(), observed.name()];
+                process.args(arguments).status().unwrap();
+            }
+        }
+        return;
+    };
+    let count = count.parse().unwrap();
+    let is_it = |it: &ObservationSpace| it.name() == observed;
+    let space = ObservationSpace::ALL.into_iter().find(is_it).unwrap();
+    let mut first = worlds(1, space);
+    steps_a_second(&mut first, Duration::ZERO);
+    let before = resident_bytes();
+    let mut many = worlds(count, space);
+    let rate = steps_a_second(&mut many, TIME);
+    let grown = resident_bytes().saturating_sub(before) as f64 / count as f64;
+    println!("{count:6}  {observed:8}  {rate:14.0}  {:26.2}", grown / 1e6);
 }
 
 fn worlds(count: usize, observation: ObservationSpace) -> VectorEnvironment {
@@ -54,7 +60,7 @@ fn worlds(count: usize, observation: ObservationSpace) -> VectorEnvironment {
     many
 }
 
-fn steps_a_second(many: &mut VectorEnvironment) -> f64 {
+fn steps_a_second(many: &mut VectorEnvironment, time: Duration) -> f64 {
     let mut random = Random::new(0);
     let mut step = || {
         let numbers = many.len() * many.action_len();
@@ -64,7 +70,7 @@ fn steps_a_second(many: &mut VectorEnvironment) -> f64 {
     };
     step();
     let (start, mut steps) = (Instant::now(), 0);
-    while start.elapsed() < TIME {
+    while start.elapsed() < time {
         steps += step();
     }
     steps as f64 / start.elapsed().as_secs_f64()
