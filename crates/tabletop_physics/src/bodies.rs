@@ -13,10 +13,15 @@ pub use mass::mass_properties;
 pub use reshape::reshape;
 
 use bevy::prelude::*;
-use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
+use bevy_rapier3d::{
+    plugin::systems::{init_colliders, init_joints, init_rigid_bodies},
+    prelude::RapierRigidBodyHandle,
+};
 use tabletop_core::{
     CommandSystems, Joint, ObjectSpec, RestApp as _, RestingSystems, SimSystems, Table, TickSystems,
 };
+
+use crate::workarounds::burden::NewBodies;
 
 /// Gives new objects, tables and joints their bodies, in [`FixedUpdate`] after
 /// [`SimSystems::Ingest`]. Runs while paused, too.
@@ -96,6 +101,8 @@ pub fn take_in(world: &mut World) -> Result {
         world.run_system_cached(init_rigid_bodies)?;
         world.run_system_cached(init_colliders)?;
         body::let_round_object_spin(world, entity);
+        let handle = world.get::<RapierRigidBodyHandle>(entity).map(|it| it.0);
+        world.resource_mut::<NewBodies>().0.extend(handle);
     }
     for entity in joints {
         if let Some(connection) = world.get::<Joint>(entity).copied() {

@@ -41,6 +41,7 @@ mod rest;
 mod settings;
 mod snapshot;
 mod twist;
+mod unequal;
 mod workarounds;
 
 pub use bodies::{BodySystems, collider, mass_properties, reshape, take_in};
@@ -82,7 +83,7 @@ use tabletop_geometry::Twist;
 use tabletop_history::RollbackApp;
 
 use crate::workarounds::{
-    order, outside,
+    burden, order, outside,
     quarantine::{self, Quarantine},
     release, relief, rolling,
     seams::{self, SeamHooks, Seams},
@@ -117,6 +118,8 @@ impl Plugin for PhysicsPlugin {
             .init_resource::<outside::WrittenBack>()
             .init_resource::<Quarantine>()
             .init_resource::<impact::Onset>()
+            .init_resource::<burden::Burdened>()
+            .init_resource::<burden::NewBodies>()
             .init_resource::<Seams>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
@@ -160,7 +163,17 @@ impl Plugin for PhysicsPlugin {
                         .after(effort::configure_solver)
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),
+                    burden::take_up
+                        .after(effort::configure_solver)
+                        .after(impact::note_onset)
+                        .before(PhysicsSet::StepSimulation)
+                        .in_set(SimSystems::Physics),
                     RapierPhysicsPlugin::<SeamHooks>::get_systems(PhysicsSet::StepSimulation),
+                    burden::put_down
+                        .after(PhysicsSet::StepSimulation)
+                        .before(impact::rebound)
+                        .before(relief::relieve)
+                        .in_set(SimSystems::Physics),
                     impact::rebound
                         .run_if(impact::is_any_elastic)
                         .after(PhysicsSet::StepSimulation)
@@ -175,6 +188,10 @@ impl Plugin for PhysicsPlugin {
                         .after(systems::writeback_rigid_bodies)
                         .after(systems::writeback_mass_properties)
                         .in_set(PhysicsSet::Writeback),
+                    unequal::warn_of_unequal_masses
+                        .after(relief::relieve)
+                        .before(PhysicsSet::Writeback)
+                        .in_set(SimSystems::Physics),
                     outside::note_written_back
                         .after(PhysicsSet::Writeback)
                         .in_set(SimSystems::Physics),
@@ -205,6 +222,7 @@ impl Plugin for PhysicsPlugin {
             .rollback_resource::<Care>()
             .rollback_resource::<Quarantine>()
             .rollback_resource::<Seams>()
+            .rollback_resource::<burden::NewBodies>()
             .rollback_state::<PhysicsSnapshot>()
             .derived_component::<Twist>();
     }

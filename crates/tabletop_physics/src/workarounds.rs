@@ -22,6 +22,7 @@
 //! | plugin: trees of transforms are propagated without being marked | [`transforms`]: marked, and only if one has moved | none known | not with 0.37 |
 //! | plugin: the end of a disabling is missed in a pause | [`enabling`]: Rapier is told at once | bevy_rapier#343 | when removals are observed |
 
+pub(crate) mod burden;
 pub(crate) mod contact;
 pub(crate) mod enabling;
 pub(crate) mod impulses;
