@@ -39,8 +39,8 @@ struct Rolling;
 /// Finds the points in which a cylinder on its side touches something, from a manifold that knows about where.
 fn touch_along_line<M, C: Default + Copy>(
     at: &Pose,
-    one: &Roller,
-    other: &Roller,
+    one: &RollingShape,
+    other: &RollingShape,
     prediction: f32,
     manifold: &mut ContactManifold<M, C>,
 ) {
@@ -80,7 +80,7 @@ fn touch_along_line<M, C: Default + Copy>(
 }
 
 /// The normal by a formula: of two cylinders, or of the face on which one lies, if about there is one.
-fn exact_normal(at: &Pose, one: &Roller, other: &Roller, about: Vec3) -> Option<Vec3> {
+fn exact_normal(at: &Pose, one: &RollingShape, other: &RollingShape, about: Vec3) -> Option<Vec3> {
     match (one.cylinder, other.cylinder) {
         (Some(own), Some(theirs)) => {
             let (own_at, their_at) =
@@ -97,7 +97,12 @@ fn exact_normal(at: &Pose, one: &Roller, other: &Roller, about: Vec3) -> Option<
 }
 
 /// The direction between the nearest points.
-fn nearest_normal(at: &Pose, one: &Roller, other: &Roller, about: Vec3) -> Option<Vec3> {
+fn nearest_normal(
+    at: &Pose,
+    one: &RollingShape,
+    other: &RollingShape,
+    about: Vec3,
+) -> Option<Vec3> {
     let nearest = contact_support_map_support_map_with_params(
         at,
         one.features(),
@@ -113,13 +118,13 @@ fn nearest_normal(at: &Pose, one: &Roller, other: &Roller, about: Vec3) -> Optio
 }
 
 /// A shape, by the line on which it rolls if it is a cylinder.
-struct Roller<'a> {
+struct RollingShape<'a> {
     cylinder: Option<Segment>,
     radius: f32,
     shape: &'a dyn PolygonalFeatureMap,
 }
 
-impl<'a> Roller<'a> {
+impl<'a> RollingShape<'a> {
     fn of(shape: &'a dyn Shape) -> Option<Self> {
         let cylinder = shape.as_shape::<Polytope>().and_then(Polytope::axis);
         let (shape, _) = shape.as_polygonal_feature_map()?;
@@ -227,7 +232,7 @@ impl<M: Default + Clone, C: Default + Copy> PersistentQueryDispatcher<M, C> for 
                 manifold,
             )
         };
-        let surfaces = [Roller::of(first), Roller::of(second)];
+        let surfaces = [RollingShape::of(first), RollingShape::of(second)];
         let [Some(one), Some(other)] = surfaces else {
             return by_faces(manifold);
         };
