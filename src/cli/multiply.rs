@@ -80,6 +80,7 @@ const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
 const PARTS: NumberRange<f32> = NumberRange::decimal(0.0, 0.5);
 const DISTRACTORS: NumberRange<u32> = NumberRange::whole(0, 50);
 const LENGTHS: NumberRange<f32> = NumberRange::decimal(0.0, 10.0).of("units");
+
 /// The file with what a folder of demonstrations is made of.
 const MANIFEST: &str = "multiply.json";
 

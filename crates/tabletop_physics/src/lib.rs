@@ -199,7 +199,7 @@ impl Plugin for PhysicsPlugin {
                 )
                     .in_set(RestingSystems),
             )
-            .add_observer(let_cylinders_roll)
+            .add_observer(rolling::let_cylinders_roll)
             .add_plugins((bodies::plugin, rest::plugin))
             .add_systems(
                 FixedUpdate,
@@ -225,15 +225,6 @@ impl Plugin for PhysicsPlugin {
             .rollback_resource::<burden::NewBodies>()
             .rollback_state::<PhysicsSnapshot>()
             .derived_component::<Twist>();
-    }
-}
-
-fn let_cylinders_roll(
-    add: On<Add, RapierContextSimulation>,
-    mut contexts: Query<&mut RapierContextSimulation>,
-) {
-    if let Ok(mut simulation) = contexts.get_mut(add.entity) {
-        simulation.narrow_phase = rolling::narrow_phase();
     }
 }
 

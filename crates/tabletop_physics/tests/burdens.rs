@@ -1,44 +1,24 @@
 //! A light object carries a heavy one.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod kit;
+
 use bevy::prelude::*;
-use tabletop_core::{Dynamics, Table, prelude::*};
-use tabletop_geometry::Twist;
-use tabletop_physics::PhysicsPlugin;
+use kit::{add_table, app, block, place, twist};
+use tabletop_core::{Dynamics, prelude::*};
 
 fn world() -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        CorePlugin::default(),
-        PhysicsPlugin::default(),
-    ))
-    .start();
-    app.world_mut().spawn(Table {
-        xspan: 100.0,
-        yspan: 100.0,
-    });
+    let mut app = app(default());
+    add_table(&mut app);
     app
 }
 
 fn add(app: &mut App, at: Vec3, mass: f32, span: Vec3, velocity: Vec3) -> Entity {
-    let at = Pose::at(at);
-    let color = Rgb::GRAY;
-    let shape = Shape::Block { span, color };
-    let mut object = ObjectSpec::new(format!("{at:?}"), at, mass, shape);
-    object.dynamics = Dynamics {
+    let dynamics = Dynamics {
         velocity,
         ..default()
     };
-    app.world_mut().spawn((object, Transform::from(at))).id()
-}
-
-fn place(app: &App, object: Entity) -> Vec3 {
-    app.world().get::<Transform>(object).unwrap().translation
-}
-
-fn speed(app: &App, object: Entity) -> f32 {
-    app.world().get::<Twist>(object).unwrap().linear.length()
+    kit::add(app, Pose::at(at), mass, block(span), dynamics)
 }
 
 /// How far the cubes of a tower are from their places at most, in 5 s; from below. The uppermost one falls from this height.
@@ -136,7 +116,7 @@ fn a_light_object_is_as_light_as_before_once_its_load_is_gone() {
     let mut fastest = 0.0_f32;
     for _ in 0..30 {
         app.step(1);
-        fastest = fastest.max(speed(&app, light));
+        fastest = fastest.max(twist(&app, light).linear.length());
     }
     assert!(fastest > 3.0, "{fastest}");
 }

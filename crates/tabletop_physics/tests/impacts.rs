@@ -1,58 +1,31 @@
 //! Impacts of elastic bodies have the results of the textbook.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use bevy::prelude::*;
-use tabletop_core::{Dynamics, Table, prelude::*};
-use tabletop_geometry::Twist;
-use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
+mod kit;
 
-const BALL: Shape = Shape::Sphere {
-    radius: 0.5,
-    color: Rgb::GRAY,
-};
+use bevy::prelude::*;
+use kit::{BALL, add_table, app, block, place, twist};
+use tabletop_core::{Dynamics, prelude::*};
+use tabletop_physics::PhysicsSettings;
 
 /// A world with a table, in which all surfaces have this restitution.
 fn world(restitution: f32) -> App {
-    let mut app = App::new();
-    let settings = PhysicsSettings {
+    let mut app = app(PhysicsSettings {
         restitution,
         ..default()
-    };
-    app.add_plugins((
-        MinimalPlugins,
-        CorePlugin::default(),
-        PhysicsPlugin { settings },
-    ))
-    .start();
-    app.world_mut().spawn(Table {
-        xspan: 100.0,
-        yspan: 100.0,
     });
+    add_table(&mut app);
     app
 }
 
-fn block(span: Vec3) -> Shape {
-    let color = Rgb::GRAY;
-    Shape::Block { span, color }
-}
-
+/// Adds a smooth object.
 fn add(app: &mut App, at: Vec3, mass: f32, shape: Shape, velocity: Vec3) -> Entity {
-    let at = Pose::at(at);
-    let mut object = ObjectSpec::new(format!("{at:?}"), at, mass, shape);
-    object.dynamics = Dynamics {
+    let dynamics = Dynamics {
         friction: Some(0.0),
         velocity,
         ..default()
     };
-    app.world_mut().spawn((object, Transform::from(at))).id()
-}
-
-fn height(app: &App, object: Entity) -> f32 {
-    app.world().get::<Transform>(object).unwrap().translation.z
-}
-
-fn twist(app: &App, object: Entity) -> Twist {
-    *app.world().get::<Twist>(object).unwrap()
+    kit::add(app, Pose::at(at), mass, shape, dynamics)
 }
 
 /// The greatest heights that an object reaches after each bounce.
@@ -60,9 +33,9 @@ fn peaks(app: &mut App, object: Entity, bounces: usize) -> Vec<f32> {
     let mut peaks = Vec::new();
     let mut rises = false;
     for _ in 0..2000 {
-        let before = height(app, object);
+        let before = place(app, object).z;
         app.step(1);
-        let now = height(app, object);
+        let now = place(app, object).z;
         if rises && now < before {
             peaks.push(before);
             if peaks.len() == bounces {

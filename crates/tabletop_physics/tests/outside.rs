@@ -1,20 +1,15 @@
 //! Changes of bodies from outside reach Rapier in the next step, even during a pause of one tick.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod kit;
+
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::prelude::*;
-use tabletop_physics::PhysicsPlugin;
 
 /// An app in which a ball falls, so that Rapier changes something in every tick.
 fn app() -> (App, Entity) {
-    let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        CorePlugin::default(),
-        PhysicsPlugin::default(),
-    ))
-    .start();
+    let mut app = kit::app(default());
     let ball = ball(&mut app, 0.0);
     app.step(5);
     (app, ball)

@@ -1,25 +1,17 @@
 //! The pairs of solids that Rapier keeps.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod kit;
+
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::RapierContextSimulation;
 use tabletop_core::{Dynamics, prelude::*};
 use tabletop_geometry::PAIR_GAP;
-use tabletop_physics::PhysicsPlugin;
 
 /// A world of cubes with this edge, at these places.
 fn world(edge: f32, places: impl IntoIterator<Item = Vec3>, velocity: Vec3) -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        CorePlugin::default(),
-        PhysicsPlugin::default(),
-    ))
-    .start();
-    let shape = Shape::Block {
-        span: Vec3::splat(edge),
-        color: Rgb::GRAY,
-    };
+    let mut app = kit::app(default());
+    let shape = kit::block(Vec3::splat(edge));
     for (index, place) in places.into_iter().enumerate() {
         let at = Pose::at(place);
         let mut cube = ObjectSpec::new(format!("cube {index}"), at, 1.0, shape.clone());

@@ -1,15 +1,12 @@
 //! What rolls and slides does it as the textbook says, over seams, too.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use bevy::prelude::*;
-use tabletop_core::{Dynamics, prelude::*};
-use tabletop_geometry::Twist;
-use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
+mod kit;
 
-const BALL: Shape = Shape::Sphere {
-    radius: 0.5,
-    color: Rgb::GRAY,
-};
+use bevy::prelude::*;
+use kit::{BALL, app, block, place, twist};
+use tabletop_core::{Dynamics, prelude::*};
+use tabletop_physics::PhysicsSettings;
 
 const CYLINDER: Shape = Shape::Cylinder {
     radius: 0.5,
@@ -19,38 +16,24 @@ const CYLINDER: Shape = Shape::Cylinder {
 
 /// A world without damping.
 fn world() -> App {
-    let mut app = App::new();
-    let settings = PhysicsSettings {
+    app(PhysicsSettings {
         angular_damping: 0.0,
         rolling_damping: 0.0,
         ..default()
-    };
-    app.add_plugins((
-        MinimalPlugins,
-        CorePlugin::default(),
-        PhysicsPlugin { settings },
-    ))
-    .start();
-    app
-}
-
-fn block(span: Vec3) -> Shape {
-    let color = Rgb::GRAY;
-    Shape::Block { span, color }
+    })
 }
 
 fn add(app: &mut App, at: Pose, mass: f32, shape: Shape, friction: f32, velocity: Vec3) -> Entity {
-    let mut object = ObjectSpec::new(format!("{at:?}"), at, mass, shape);
-    object.dynamics = Dynamics {
+    let dynamics = Dynamics {
         friction: Some(friction),
         velocity,
         ..default()
     };
-    app.world_mut().spawn((object, Transform::from(at))).id()
+    kit::add(app, at, mass, shape, dynamics)
 }
 
 fn velocity(app: &App, object: Entity) -> Vec3 {
-    app.world().get::<Twist>(object).unwrap().linear
+    twist(app, object).linear
 }
 
 /// A floor of tiles along X, with its top at 0.
@@ -71,7 +54,7 @@ fn smooth_things_keep_their_speed_over_seams() {
         let slider = add(&mut app, at, 1.0, shape.clone(), 0.0, Vec3::X * 10.0);
         for _ in 0..150 {
             app.step(1);
-            let place = app.world().get::<Transform>(slider).unwrap().translation;
+            let place = place(&app, slider);
             assert!((place.z - 0.5).abs() < 0.005, "{shape:?} at {place}");
         }
         let speed = velocity(&app, slider);
@@ -90,7 +73,7 @@ fn a_block_stops_beyond_a_seam_where_friction_lets_it() {
     let at = Pose::at(Vec3::Z * 0.5);
     let cube = add(&mut app, at, 1.0, cube, 0.5, Vec3::X * 10.0);
     app.step(120);
-    let way = app.world().get::<Transform>(cube).unwrap().translation.x;
+    let way = place(&app, cube).x;
     let expected = 100.0 / (2.0 * 0.25 * 98.1);
     assert!((way / expected - 1.0).abs() < 0.02, "{way} {expected}");
 }
@@ -111,7 +94,7 @@ fn a_step_still_stops_a_block() {
     let at = Pose::at(Vec3::Z * 0.5);
     let cube = add(&mut app, at, 1.0, block(Vec3::ONE), 0.0, Vec3::X * 5.0);
     app.step(60);
-    let place = app.world().get::<Transform>(cube).unwrap().translation;
+    let place = place(&app, cube);
     assert!(place.x < 1.05, "{place}");
 }
 
@@ -152,6 +135,6 @@ fn a_lying_cylinder_stays_where_it_is() {
     };
     let cylinder = add(&mut app, lying, 1.0, CYLINDER, 0.5, Vec3::ZERO);
     app.step(300);
-    let place = app.world().get::<Transform>(cylinder).unwrap().translation;
+    let place = place(&app, cylinder);
     assert!(place.truncate().length() < 0.01, "{place}");
 }

@@ -48,10 +48,10 @@ fn heights(world: &mut SmallWorld, id: &str, rest: f64, seconds: f64) -> Vec<f64
         let speed = world.velocity(id).z;
         let height = world.location(id).z - rest + speed * speed / (2.0 * G);
         let is_rising = speed > 0.05;
-        match heights.last_mut() {
-            Some(last) if is_rising && !was_falling => *last = height,
-            _ if is_rising && was_falling => heights.push(height),
-            _ => {}
+        if is_rising && was_falling {
+            heights.push(height);
+        } else if is_rising && let Some(last) = heights.last_mut() {
+            *last = height;
         }
         was_falling = !is_rising;
     });

@@ -46,7 +46,9 @@ pub(crate) fn rebound(
         };
         let touches = touches(&simulation.narrow_phase, &colliders.colliders, &set.bodies);
         let flights = Flights::new(&onset, &set.bodies, configuration.gravity.as_dvec3());
-        let impact = flights.impact(&touches, elasticity);
+        let Some(impact) = flights.impact(&touches, elasticity) else {
+            continue;
+        };
         for (handle, velocity) in impact.rebound(&set.bodies) {
             if let Some(body) = set.bodies.get_mut(handle) {
                 body.set_linvel(velocity.linear.as_vec3(), true);
@@ -66,7 +68,6 @@ struct Flights<'a> {
 }
 
 /// The bodies that elastic impacts reach, and their contacts.
-#[derive(Default)]
 struct Impact {
     handles: Vec<RigidBodyHandle>,
     bodies: Vec<Striker>,
@@ -90,39 +91,39 @@ impl<'a> Flights<'a> {
         }
     }
 
-    /// The impact of bodies that meet in these touches.
-    fn impact(mut self, touches: &[Meeting], elasticity: impl Fn(ColliderHandle) -> f64) -> Impact {
-        let times: Vec<_> = touches.iter().map(|touch| self.time(touch)).collect();
-        for (touch, time) in touches.iter().zip(&times) {
-            for body in self.places_of(touch).into_iter().flatten() {
+    /// The impact of bodies that meet in these touches; `None` if nothing bounces.
+    fn impact(
+        mut self,
+        touches: &[Meeting],
+        elasticity: impl Fn(ColliderHandle) -> f64,
+    ) -> Option<Impact> {
+        let mut contacts: Vec<_> = touches
+            .iter()
+            .map(|touch| self.contact(touch, &elasticity))
+            .collect();
+        let before: Vec<_> = self.flights.iter().map(|flight| flight.velocity).collect();
+        let accelerations: Vec<_> = contacts.iter().map(|it| self.acceleration(it)).collect();
+        for ((contact, touch), acceleration) in contacts.iter_mut().zip(touches).zip(accelerations)
+        {
+            let (gap, approach) = (touch.gap.max(0.0), contact.approach(&before));
+            let time = time_to_close(gap, approach, acceleration);
+            // Rapier stops bodies that are about to meet in the first sub-step of the next step.
+            let meets = time <= TICK + self.substep(contact);
+            let later = if meets { (time - TICK).max(0.0) } else { 0.0 };
+            let way = (approach + acceleration * TICK) * later;
+            contact.meets_from = if meets { 0.0 } else { gap / TICK };
+            contact.ahead = 2.0 * acceleration.max(0.0) * way;
+            contact.rests_below = 0.5 * acceleration.max(0.0) * TICK;
+            for &body in contact.bodies.iter().flatten() {
                 let until = &mut self.flights[body].until;
-                *until = until.min(*time);
+                *until = until.min(time);
             }
         }
-        let contacts = touches.iter().zip(times).map(|(touch, time)| {
-            let [first, second] = touch.colliders.map(&elasticity);
-            let acceleration = self.acceleration(touch);
-            // Rapier stops bodies that are about to meet in the first sub-step of the next step.
-            let meets = time <= TICK + self.substep(touch);
-            let later = if meets { (time - TICK).max(0.0) } else { 0.0 };
-            let way = (self.approach(touch) + acceleration * TICK) * later;
-            Collision {
-                bodies: self.places_of(touch),
-                arms: touch.arms,
-                normal: touch.normal,
-                drive: self.drive(touch),
-                restitution: (first + second) / 2.0,
-                ahead: 2.0 * acceleration.max(0.0) * way,
-                meets_from: match meets {
-                    true => 0.0,
-                    false => touch.gap.max(0.0) / TICK,
-                },
-                rests_below: 0.5 * acceleration.max(0.0) * TICK,
-            }
-        });
-        let mut contacts: Vec<_> = contacts.collect();
         let velocities: Vec<_> = self.flights.iter().map(|flight| flight.last()).collect();
         let reached = reached(&contacts, &velocities);
+        if reached.is_empty() {
+            return None;
+        }
         contacts.retain(|contact| {
             let mut bodies = contact.bodies.iter().flatten();
             bodies.any(|body| reached.contains(body))
@@ -133,72 +134,61 @@ impl<'a> Flights<'a> {
             inverse_inertia: inverse_inertia(body),
             velocity,
         });
-        Impact {
+        Some(Impact {
             bodies: bodies.collect(),
             contacts,
             lags: self.flights.iter().map(|flight| flight.lag()).collect(),
             handles: self.handles,
+        })
+    }
+
+    /// Where two bodies touch. When they meet is not known yet.
+    fn contact(&self, touch: &Meeting, elasticity: impl Fn(ColliderHandle) -> f64) -> Collision {
+        let place = |handle: RigidBodyHandle| self.places.get(&handle.into_raw_parts().0).copied();
+        let [first, second] = touch.colliders.map(elasticity);
+        Collision {
+            bodies: touch.bodies.map(|body| place(body?)),
+            arms: touch.arms,
+            normal: touch.normal,
+            drive: self.drive(touch, 0) - self.drive(touch, 1),
+            restitution: (first + second) / 2.0,
+            meets_from: 0.0,
+            ahead: 0.0,
+            rests_below: 0.0,
         }
     }
 
-    fn places_of(&self, touch: &Meeting) -> [Option<usize>; 2] {
-        let place = |handle: RigidBodyHandle| self.places.get(&handle.into_raw_parts().0).copied();
-        touch.bodies.map(|body| place(body?))
-    }
-
-    /// The time, in s, after which two bodies meet, if only gravity acts; infinite if they do not.
-    fn time(&self, touch: &Meeting) -> f64 {
-        let gap = touch.gap.max(0.0);
-        time_to_close(gap, self.approach(touch), self.acceleration(touch))
+    /// The speed along the normal of a body that no force moves; 0 if forces do.
+    fn drive(&self, touch: &Meeting, side: usize) -> f64 {
+        let is_moved =
+            |handle: &RigidBodyHandle| self.places.contains_key(&handle.into_raw_parts().0);
+        let body = touch.bodies[side].filter(|handle| !is_moved(handle));
+        let body = body.and_then(|body| self.bodies.get(body));
+        body.map_or(0.0, |body| {
+            let velocity = body.velocity_at_point(touch.arms[side].as_vec3());
+            velocity.as_dvec3().dot(touch.normal)
+        })
     }
 
     /// Duration of the longer sub-step of two bodies, in s.
-    fn substep(&self, touch: &Meeting) -> f64 {
-        let bodies = self.places_of(touch).into_iter().flatten();
-        let substeps = bodies.map(|body| self.flights[body].substep);
+    fn substep(&self, contact: &Collision) -> f64 {
+        let bodies = contact.bodies.iter().flatten();
+        let substeps = bodies.map(|&body| self.flights[body].substep);
         substeps.fold(0.0, f64::max)
     }
 
-    /// The speed of approach at the beginning of the step.
-    fn approach(&self, touch: &Meeting) -> f64 {
-        let speed = |side: usize| {
-            self.places_of(touch)[side].map_or(0.0, |body| {
-                let Velocity { linear, angular } = self.flights[body].velocity;
-                (linear + angular.cross(touch.arms[side])).dot(touch.normal)
-            })
-        };
-        speed(0) - speed(1) + self.drive(touch)
-    }
-
     /// The acceleration with which gravity lets two bodies approach.
-    fn acceleration(&self, touch: &Meeting) -> f64 {
-        let [first, second] = self
-            .places_of(touch)
+    fn acceleration(&self, contact: &Collision) -> f64 {
+        let [first, second] = contact
+            .bodies
             .map(|body| body.map_or(DVec3::ZERO, |body| self.flights[body].acceleration));
-        (first - second).dot(touch.normal)
-    }
-
-    /// The speed at which bodies that no force moves approach.
-    fn drive(&self, touch: &Meeting) -> f64 {
-        let speed = |side: usize| {
-            let is_moved = self.places_of(touch)[side].is_some();
-            let body = touch.bodies[side].filter(|_| !is_moved);
-            let body = body.and_then(|body| self.bodies.get(body));
-            body.map_or(0.0, |body| {
-                let velocity = body.velocity_at_point(touch.arms[side].as_vec3());
-                velocity.as_dvec3().dot(touch.normal)
-            })
-        };
-        speed(0) - speed(1)
+        (first - second).dot(contact.normal)
     }
 }
 
 impl Impact {
     /// The velocities that change, with which bodies part.
     fn rebound(&self, bodies: &rapier::prelude::RigidBodySet) -> Vec<(RigidBodyHandle, Velocity)> {
-        if self.contacts.is_empty() {
-            return Vec::new();
-        }
         let (mut parted, collided) = collide(&self.bodies, &self.contacts);
         for (velocity, lag) in parted.iter_mut().zip(&self.lags) {
             velocity.linear -= *lag;

@@ -3,7 +3,7 @@
 //! To Parry, a cylinder is smooth, and the normals of its contacts are so inexact that it never comes to rest; as a prism it stands on a slope. A cylinder
 //! on its side touches with a line, which is that of a segment with a radius: exact, since the segment never enters what the cylinder touches.
 
-use bevy::math::Vec3;
+use bevy::prelude::*;
 use bevy_rapier3d::{
     parry::query::{
         ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
@@ -17,6 +17,7 @@ use bevy_rapier3d::{
         gjk::{GJKResult, VoronoiSimplex},
     },
     parry::shape::{PolygonalFeature, PolygonalFeatureMap, Segment},
+    prelude::RapierContextSimulation,
     rapier::prelude::{NarrowPhase, Pose, Shape},
 };
 
@@ -33,6 +34,16 @@ pub(crate) fn narrow_phase() -> NarrowPhase {
     NarrowPhase::with_query_dispatcher(Rolling)
 }
 
+/// Lets cylinders roll in a new context of Rapier.
+pub(crate) fn let_cylinders_roll(
+    add: On<Add, RapierContextSimulation>,
+    mut contexts: Query<&mut RapierContextSimulation>,
+) {
+    if let Ok(mut simulation) = contexts.get_mut(add.entity) {
+        simulation.narrow_phase = narrow_phase();
+    }
+}
+
 /// Finds the contacts of cylinders on their side, and leaves all else to Parry.
 struct Rolling;
 
@@ -45,12 +56,12 @@ fn touch_along_line<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
 ) {
     let before = manifold.points.clone();
-    let normals = [
-        exact_normal(at, one, other, manifold.local_n1),
-        nearest_normal(at, one, other, manifold.local_n1),
-    ];
+    let about = manifold.local_n1;
     manifold.clear();
-    for normal in normals.into_iter().flatten() {
+    for find_normal in [exact_normal, nearest_normal] {
+        let Some(normal) = find_normal(at, one, other, about) else {
+            continue;
+        };
         let others = at.rotation.inverse() * -normal;
         let (own, theirs) = (one.feature(normal), other.feature(others));
         PolygonalFeature::contacts(
