@@ -13,9 +13,8 @@ use crate::{
     workarounds::polytope::Polytope,
 };
 
-/// Speed, in units/s, below which all points of an object stay that falls asleep after half a second: 4 cm/s. Rapier compares half of it. With less than
-/// 0.3, a ring on a peg rocks on for ever, since Rapier keeps the points of contact for a whole step (`scenarios/rings.ron`).
-const SLEEP_BELOW: f32 = 0.4;
+/// Speed, in units/s, below which all points of an object stay that falls asleep after half a second: 5 mm/s. Rapier compares half of it.
+const SLEEP_BELOW: f32 = 0.05;
 
 const SLEEP_THRESHOLDS: Sleeping = Sleeping {
     normalized_linear_threshold: SLEEP_BELOW / 2.0,
