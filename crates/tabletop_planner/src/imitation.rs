@@ -124,6 +124,8 @@ impl Imitator<'_> {
             return Ok(());
         }
         self.park_all(stage)?;
+        self.look(stage)?;
+        self.before = Before::anything(stage.sight());
         for i in 0..self.task.steps.len() {
             let step = &self.task.steps[i];
             let object = self.binding.object(&step.object);
@@ -135,6 +137,7 @@ impl Imitator<'_> {
                     tries,
                 });
                 self.outcome.corrections += usize::from(tries > 0);
+                self.look(stage)?;
                 let place = |sight: &Sight| Some(sight.objects.get(object?)?.pose);
                 let before = place(stage.sight());
                 failure = self.do_step(stage, i).err();
@@ -142,6 +145,7 @@ impl Imitator<'_> {
                     return Err(Stopped);
                 }
                 wait(stage, 10)?;
+                self.look(stage)?;
                 let is_met = is_met(step, self.binding, stage.sight(), &self.before);
                 match (is_met, &failure) {
                     (Ok(true), None) => break,
@@ -196,6 +200,7 @@ impl Imitator<'_> {
         stage: &mut dyn PlanningStage,
     ) -> Result<Option<(usize, PlanFailure)>, Stopped> {
         for _ in 0..TRIES {
+            self.look(stage)?;
             let undone = undone(self.task, self.binding, stage.sight(), &self.before);
             let Some((number, PlanFailure::Misplaced(_))) = undone else {
                 return Ok(undone);
@@ -206,7 +211,22 @@ impl Imitator<'_> {
             }
             wait(stage, 10)?;
         }
+        self.look(stage)?;
         Ok(undone(self.task, self.binding, stage.sight(), &self.before))
+    }
+
+    /// Looks at the table. If an arm may hide something, the free arms go to their waiting places first.
+    fn look(&self, stage: &mut dyn PlanningStage) -> Result<(), Stopped> {
+        if stage.look().is_empty() {
+            return Ok(());
+        }
+        for limb in 0..self.parked.len() {
+            if stage.sight().limbs[limb].holds.is_empty() {
+                self.try_to_park(stage, limb)?;
+            }
+        }
+        stage.look();
+        Ok(())
     }
 
     /// The first step whose object no arm can take where it stands in the beginning. Objects on, in or around others may be elsewhere by then.

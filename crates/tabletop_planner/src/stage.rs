@@ -13,6 +13,12 @@ pub trait PlanningStage {
     /// # Errors
     /// The robot is to stop.
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped>;
+
+    /// Looks at the table anew. Returns the ids of the objects that it does not see well enough; in the sight, these are where they were last
+    /// seen. A stage that is told every pose has nothing to look at.
+    fn look(&mut self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// The drives that carry out orders for the limbs of a robot.

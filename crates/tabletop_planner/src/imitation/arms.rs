@@ -86,7 +86,10 @@ impl Imitator<'_> {
             }
             let transfer = self.transfer(limb, id, side);
             match act(&transfer, stage) {
-                Ok(()) => return Ok(()),
+                Ok(()) => {
+                    self.look(stage)?;
+                    return Ok(());
+                }
                 Err(new) => {
                     let has_acted = matches!(
                         new,
