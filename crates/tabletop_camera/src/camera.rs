@@ -67,6 +67,11 @@ impl Camera {
         }
     }
 
+    /// The direction of the ray through a point of the picture, whose part along the axis of view is 1. The point is given as for [`pixel_of`](Self::pixel_of).
+    pub fn ray_through(&self, pixel: Vec2) -> Vec3 {
+        PinholeView::of(self).rays.through(pixel.x, pixel.y)
+    }
+
     /// The pixel of a point, as column and row; the centre of the upper left pixel is (0, 0). `None` for points that are
     /// not in front of the camera; others may lie outside the picture.
     pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
@@ -89,10 +94,12 @@ pub(crate) struct PinholeView {
     center: Vec2,
 }
 
-/// A rectangle in the picture.
-#[derive(Clone, Debug)]
-pub(crate) struct Window {
+/// A rectangle in a picture, in pixels.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PictureWindow {
+    /// Its columns.
     pub columns: Range<u32>,
+    /// Its rows.
     pub rows: Range<u32>,
 }
 
@@ -161,7 +168,7 @@ impl PinholeView {
     }
 
     /// The window around the convex hull of these points, given relative to the eye.
-    pub fn window_of(&self, corners: &[Vec3; 8]) -> Option<Window> {
+    pub fn window_of(&self, corners: &[Vec3; 8]) -> Option<PictureWindow> {
         let is_drawable = |corner: &Vec3| corner.abs().cmplt(Vec3::splat(FARTHEST)).all();
         if !corners.iter().all(is_drawable) {
             return None;
@@ -173,7 +180,7 @@ impl PinholeView {
         let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for corner in seen {
             let Some(corner) = corner else {
-                let all = Window {
+                let all = PictureWindow {
                     columns: 0..self.width,
                     rows: 0..self.height,
                 };
@@ -182,7 +189,7 @@ impl PinholeView {
             least = least.min(corner);
             most = most.max(corner);
         }
-        let window = Window {
+        let window = PictureWindow {
             columns: pixels_between(least.x, most.x, self.width),
             rows: pixels_between(least.y, most.y, self.height),
         };
@@ -222,8 +229,42 @@ impl FourTurned {
     }
 }
 
-impl Window {
+impl PictureWindow {
+    /// True if it has no pixel.
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty() || self.rows.is_empty()
+    }
+
+    /// Number of its pixels.
+    pub fn area(&self) -> usize {
+        self.columns.len() * self.rows.len()
+    }
+
+    /// The pixels that it shares with another one.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        let common = |one: &Range<u32>, other: &Range<u32>| {
+            one.start.max(other.start)..one.end.min(other.end)
+        };
+        Self {
+            columns: common(&self.columns, &other.columns),
+            rows: common(&self.rows, &other.rows),
+        }
+    }
+
+    /// The window with this many more pixels on each side, as far as the picture has them.
+    #[must_use]
+    pub fn widened(&self, by: u32, [width, height]: [u32; 2]) -> Self {
+        let wider =
+            |range: &Range<u32>, end| range.start.saturating_sub(by)..(range.end + by).min(end);
+        Self {
+            columns: wider(&self.columns, width),
+            rows: wider(&self.rows, height),
+        }
+    }
+
     /// The window around two.
+    #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         let around = |one: &Range<u32>, other: &Range<u32>| {
             one.start.min(other.start)..one.end.max(other.end)
@@ -235,7 +276,7 @@ impl Window {
     }
 
     /// The columns as indices.
-    pub fn columns(&self) -> Range<usize> {
+    pub(crate) fn columns(&self) -> Range<usize> {
         self.columns.start as usize..self.columns.end as usize
     }
 }

@@ -52,8 +52,8 @@ mod raster;
 mod scene;
 mod visible_world;
 
-pub use camera::Camera;
-pub use raster::Rasterizer;
+pub use camera::{Camera, PictureWindow};
+pub use raster::{PictureLayers, Rasterizer};
 pub use scene::{DrawnFigure, DrawnSolid, Facets, Scene};
 pub use visible_world::{FiguresSeen, VisibleWorld};
 

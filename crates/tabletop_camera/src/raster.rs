@@ -7,6 +7,7 @@ mod coverage;
 mod edge_table;
 mod face;
 mod kept;
+mod layers;
 mod lighting;
 mod polyhedra;
 mod quadric;
@@ -17,6 +18,8 @@ mod surface;
 mod transparent;
 mod triangle;
 mod visible;
+
+pub use layers::PictureLayers;
 
 use bevy::tasks::ComputeTaskPool;
 use tabletop_core::Picture;

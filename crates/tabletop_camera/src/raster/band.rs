@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::{
-    camera::{PinholeView, SampleOffset, Window},
+    camera::{PictureWindow, PinholeView, SampleOffset},
     raster::{
         backdrop::Backdrop,
         coverage::Coverage,
@@ -55,18 +55,9 @@ impl Band {
         let width = frame.view.width as usize;
         let count = pixels.depth.len() / width;
         let rows = first_row..first_row + count as u32;
-        self.rows.resize_with(ROWS, BandRow::default);
-        self.centers.resize(width, ROWS);
-        if frame.is_smooth {
-            self.smooth.resize(width, ROWS);
-        }
         self.find_faces(frame, rows.clone());
         self.find_dense(frame, rows.clone());
-        for row in rows.clone() {
-            self.sample_faces(frame, row, first_row);
-        }
-        self.draw_quadrics(frame, rows.clone());
-        self.draw_triangles(frame, rows.clone());
+        self.sample_surfaces(frame, rows.clone());
         for (row, mut pixels) in rows.zip(pixels.parts(width)) {
             let i = (row - first_row) as usize;
             self.paint_row(frame, row, i, &mut pixels);
@@ -74,9 +65,34 @@ impl Band {
         }
     }
 
+    /// Finds the nearest surface at every sample of these whole rows, at most [`ROWS`].
+    pub fn sample(&mut self, frame: &Frame, rows: Range<u32>) -> (&CenterSamples, &SmoothSamples) {
+        self.find_faces(frame, rows.clone());
+        for row in &mut self.rows {
+            row.dense = 0..frame.view.width;
+        }
+        self.sample_surfaces(frame, rows);
+        (&self.centers, &self.smooth)
+    }
+
+    /// Finds the nearest surface at each sample of these rows that has to be known.
+    fn sample_surfaces(&mut self, frame: &Frame, rows: Range<u32>) {
+        let width = frame.view.width as usize;
+        self.centers.resize(width, ROWS);
+        if frame.is_smooth {
+            self.smooth.resize(width, ROWS);
+        }
+        for row in rows.clone() {
+            self.sample_faces(frame, row, rows.start);
+        }
+        self.draw_quadrics(frame, rows.clone());
+        self.draw_triangles(frame, rows);
+    }
+
     /// Finds the faces that parts of the rows see.
     fn find_faces(&mut self, frame: &Frame, rows: Range<u32>) {
         let Frame { view, visible, .. } = *frame;
+        self.rows.resize_with(ROWS, BandRow::default);
         self.coverages.clear();
         for (number, face) in (0..).zip(&visible.faces) {
             if face.rows.start < rows.end && rows.start < face.rows.end {
@@ -168,21 +184,9 @@ impl Band {
     /// Draws balls and cylinders where they are nearer than faces.
     fn draw_quadrics(&mut self, frame: &Frame, rows: Range<u32>) {
         for quadric in &frame.visible.quadrics {
-            let columns = quadric.window.columns();
-            for row in rows_of(&quadric.window, &rows) {
-                let i = (row - rows.start) as usize;
-                quadric.draw(row, SampleOffset::CENTER, &mut self.centers.center_row(i));
-                if frame.is_smooth {
-                    self.single.resize(frame.view.width as usize, 1);
-                    let mut single = self.single.center_row(0);
-                    let mut smooth = self.smooth.smooth_row(i);
-                    for (sample, offset) in SampleOffset::SMOOTH.into_iter().enumerate() {
-                        single.clear(columns.clone());
-                        quadric.draw(row, offset, &mut single);
-                        smooth.merge(sample, columns.clone(), &single);
-                    }
-                }
-            }
+            let smooth = frame.is_smooth.then_some(&mut self.smooth);
+            let own = rows_of(&quadric.window, &rows);
+            quadric.draw_rows(own, rows.start, &mut self.centers, smooth, &mut self.single);
         }
     }
 
@@ -282,6 +286,6 @@ impl Band {
 }
 
 /// The rows of a window that are among these.
-fn rows_of(window: &Window, rows: &Range<u32>) -> Range<u32> {
+fn rows_of(window: &PictureWindow, rows: &Range<u32>) -> Range<u32> {
     window.rows.start.max(rows.start)..window.rows.end.min(rows.end)
 }

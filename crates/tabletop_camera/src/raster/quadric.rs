@@ -6,11 +6,13 @@
 //! at the farthest of the surfaces that it has to be behind, if that is before the nearest of
 //! those that it has to be in front of; this point is visible.
 
+use std::ops::Range;
+
 use bevy::math::Vec3;
 
 use crate::{
-    camera::{Linear, NEAR, PinholeView, Rays, SampleOffset, Window},
-    raster::samples::CenterRow,
+    camera::{Linear, NEAR, PictureWindow, PinholeView, Rays, SampleOffset},
+    raster::samples::{CenterRow, CenterSamples, SmoothSamples},
 };
 
 /// A small number that replaces 0 as a divisor.
@@ -20,7 +22,7 @@ const TINY: f32 = 1e-12;
 #[derive(Clone, Debug)]
 pub(crate) struct Quadric {
     /// The window in which it may be seen.
-    pub window: Window,
+    pub window: PictureWindow,
     curve: Curve,
     /// The cross product of the eye and the rays; its length is the radius times the ray's length where a ray is tangential.
     miss: Rays,
@@ -111,7 +113,7 @@ fn not_zero(number: f32) -> f32 {
 
 impl Quadric {
     /// The solid within this curve and these ends. The surfaces are its side and the end that faces the eye.
-    pub fn new(curve: Curve, ends: Ends, window: Window, [side, end]: [u32; 2]) -> Self {
+    pub fn new(curve: Curve, ends: Ends, window: PictureWindow, [side, end]: [u32; 2]) -> Self {
         let power = curve.eye.length_squared() - curve.radius * curve.radius;
         Self {
             window,
@@ -122,6 +124,33 @@ impl Quadric {
             ends,
             side,
             end,
+        }
+    }
+
+    /// Draws it into the samples of these rows that see nothing nearer. The samples are those of the rows from `first_row` on; `single` is
+    /// the memory for a row.
+    pub fn draw_rows(
+        &self,
+        rows: Range<u32>,
+        first_row: u32,
+        centers: &mut CenterSamples,
+        mut smooth: Option<&mut SmoothSamples>,
+        single: &mut CenterSamples,
+    ) {
+        let columns = self.window.columns();
+        for row in rows {
+            let i = (row - first_row) as usize;
+            self.draw(row, SampleOffset::CENTER, &mut centers.center_row(i));
+            if let Some(smooth) = &mut smooth {
+                single.resize(centers.columns(), 1);
+                let mut single = single.center_row(0);
+                let mut smooth = smooth.smooth_row(i);
+                for (sample, offset) in SampleOffset::SMOOTH.into_iter().enumerate() {
+                    single.clear(columns.clone());
+                    self.draw(row, offset, &mut single);
+                    smooth.merge(sample, columns.clone(), &single);
+                }
+            }
         }
     }
 

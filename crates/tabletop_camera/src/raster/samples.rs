@@ -55,6 +55,30 @@ impl<Depth: Clone + Default, RasterSurface: Clone + Default> Samples<Depth, Rast
     }
 
     /// Number of pixels in a row.
+    pub const fn columns(&self) -> usize {
+        self.width
+    }
+
+    /// Copies these columns of a row from another row of samples of the same width.
+    pub fn copy_columns(
+        &mut self,
+        row: usize,
+        columns: Range<usize>,
+        other: &Self,
+        other_row: usize,
+    ) where
+        Depth: Copy,
+        RasterSurface: Copy,
+    {
+        let own = row * self.width;
+        let own = own + columns.start..own + columns.end;
+        let from = other_row * other.width;
+        let from = from + columns.start..from + columns.end;
+        self.inverse_depth[own.clone()].copy_from_slice(&other.inverse_depth[from.clone()]);
+        self.surface[own].copy_from_slice(&other.surface[from]);
+    }
+
+    /// Number of pixels in a row, as a float in each lane.
     pub fn width(&self) -> Vec4 {
         Vec4::splat(self.width as f32)
     }

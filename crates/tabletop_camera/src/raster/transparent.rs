@@ -5,7 +5,7 @@ use tabletop_core::Markers;
 use tabletop_geometry::{Pose, Solid};
 
 use crate::{
-    camera::{PinholeView, SampleOffset, Window},
+    camera::{PictureWindow, PinholeView, SampleOffset},
     color::nearest_bytes,
     raster::{
         bounds::corners_of_solid,
@@ -53,7 +53,7 @@ impl TransparentSpheres {
     }
 
     /// The windows in which they may be seen.
-    pub fn windows(&self) -> impl Iterator<Item = &Window> {
+    pub fn windows(&self) -> impl Iterator<Item = &PictureWindow> {
         self.spheres.iter().map(|sphere| &sphere.quadric.window)
     }
 

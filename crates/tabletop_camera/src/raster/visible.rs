@@ -6,7 +6,7 @@ use bevy::math::{Mat3, Vec2, Vec3, Vec4};
 use tabletop_geometry::Solid;
 
 use crate::{
-    camera::{FourTurned, Linear, PinholeView, Window},
+    camera::{FourTurned, Linear, PictureWindow, PinholeView},
     raster::{
         bounds::{corners_of_box, corners_of_solid},
         edge_table::EdgeTable,
@@ -48,6 +48,16 @@ pub(crate) struct VisibleSurfaces {
     vertices: Vec<VisibleFour>,
 }
 
+/// The number of surfaces, faces, quadrics, triangles and patches.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SurfaceExtent {
+    surfaces: usize,
+    pub faces: usize,
+    pub quadrics: usize,
+    triangles: usize,
+    patches: u32,
+}
+
 /// A figure in the picture.
 #[derive(Clone, Debug)]
 struct ProjectedFigure {
@@ -55,7 +65,7 @@ struct ProjectedFigure {
     pose: [u32; 7],
     object: u32,
     /// The window in which it may be seen.
-    window: Option<Window>,
+    window: Option<PictureWindow>,
     /// Number of surfaces, triangles and patches up to and including it.
     surfaces: usize,
     triangles: usize,
@@ -92,23 +102,61 @@ impl VisibleSurfaces {
         self.solid_rows.clear();
         self.backdrop = None;
         for (i, drawn) in scene.solids.iter().enumerate() {
-            let corners = corners_of_solid(drawn, view);
-            let window = view.window_of(&corners);
+            let window = self.add_solid(drawn, view);
             self.solid_rows.push(rows_in(window.as_ref()));
-            if let Some(window) = window {
-                match drawn.solid {
-                    Solid::Cuboid(_) => self.add_cuboid(drawn, view, window, &corners),
-                    Solid::Cylinder { radius, yspan } => {
-                        self.add_cylinder(drawn, view, window, radius, yspan);
-                    }
-                    Solid::Ball(radius) => self.add_ball(drawn, view, window, radius),
-                    Solid::Polyhedron(_) => {}
-                }
-            }
             if i == 0 && self.faces.len() > 1 {
                 self.backdrop = Some(self.faces.len() as u32 - 1);
             }
         }
+    }
+
+    /// Adds a solid, but for polyhedra, which are figures. Returns the window in which it may be seen.
+    pub fn add_solid(&mut self, drawn: &DrawnSolid, view: &PinholeView) -> Option<PictureWindow> {
+        let corners = corners_of_solid(drawn, view);
+        let window = view.window_of(&corners)?;
+        match drawn.solid {
+            Solid::Cuboid(_) => self.add_cuboid(drawn, view, window.clone(), &corners),
+            Solid::Cylinder { radius, yspan } => {
+                self.add_cylinder(drawn, view, window.clone(), radius, yspan);
+            }
+            Solid::Ball(radius) => self.add_ball(drawn, view, window.clone(), radius),
+            Solid::Polyhedron(_) => {}
+        }
+        Some(window)
+    }
+
+    /// Adds a figure until the surfaces are [truncated](Self::truncate).
+    pub fn add_passing_figure(&mut self, drawn: &DrawnFigure, view: &PinholeView) {
+        let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
+        if let Some(window) = view.window_of(&corners) {
+            self.add_figure(drawn, view, &window);
+        }
+    }
+
+    /// How much there is of everything.
+    pub fn extent(&self) -> SurfaceExtent {
+        SurfaceExtent {
+            surfaces: self.surfaces.len(),
+            faces: self.faces.len(),
+            quadrics: self.quadrics.len(),
+            triangles: self.triangles.len(),
+            patches: self.patch_count,
+        }
+    }
+
+    /// Forgets what was added after there was this much.
+    pub fn truncate(&mut self, extent: SurfaceExtent) {
+        self.surfaces.truncate(extent.surfaces);
+        self.patches.truncate(extent.surfaces);
+        self.faces.truncate(extent.faces);
+        self.quadrics.truncate(extent.quadrics);
+        self.triangles.truncate(extent.triangles);
+        self.patch_count = extent.patches;
+    }
+
+    /// The triangles that were added after there was this much.
+    pub fn triangles_after(&self, extent: SurfaceExtent) -> &[Triangle] {
+        &self.triangles[extent.triangles..]
     }
 
     /// Projects the figures, except the first ones that are as in the previous picture.
@@ -161,7 +209,7 @@ impl VisibleSurfaces {
     }
 
     /// The windows in which figures may be seen.
-    pub fn figure_windows(&self) -> impl Iterator<Item = &Window> {
+    pub fn figure_windows(&self) -> impl Iterator<Item = &PictureWindow> {
         self.figures
             .iter()
             .filter_map(|figure| figure.window.as_ref())
@@ -183,7 +231,7 @@ impl VisibleSurfaces {
         &mut self,
         drawn: &DrawnSolid,
         view: &PinholeView,
-        window: Window,
+        window: PictureWindow,
         corners: &[Vec3; 8],
     ) {
         let lighting = self.lighting;
@@ -204,7 +252,7 @@ impl VisibleSurfaces {
         &mut self,
         drawn: &DrawnSolid,
         view: &PinholeView,
-        window: Window,
+        window: PictureWindow,
         radius: f32,
         yspan: f32,
     ) {
@@ -220,7 +268,13 @@ impl VisibleSurfaces {
         self.add_surface(RasterSurface::flat(drawn, to_eye, &self.lighting));
     }
 
-    fn add_ball(&mut self, drawn: &DrawnSolid, view: &PinholeView, window: Window, radius: f32) {
+    fn add_ball(
+        &mut self,
+        drawn: &DrawnSolid,
+        view: &PinholeView,
+        window: PictureWindow,
+        radius: f32,
+    ) {
         let curve = Curve::around_point(view, drawn.pose.location - view.eye, radius);
         let surface = self.surfaces.len() as u32;
         self.quadrics
@@ -233,14 +287,14 @@ impl VisibleSurfaces {
         &mut self,
         drawn: &DrawnFigure,
         view: &PinholeView,
-        window: &Window,
-    ) -> Option<Window> {
+        window: &PictureWindow,
+    ) -> Option<PictureWindow> {
         let facets = &*drawn.facets;
         self.find_vertices(drawn, view);
         let lighting = self.lighting;
         let axes = Mat3::from_quat(drawn.pose.rotation);
         let eye = drawn.pose.inverse() * view.eye;
-        let mut seen: Option<Window> = None;
+        let mut seen: Option<PictureWindow> = None;
         for facet in &facets.triangles {
             if facet.normal.dot(eye) - facet.height < EDGE_ON {
                 continue;
@@ -348,13 +402,17 @@ impl ProjectedFigure {
 }
 
 /// The rows of a window; none, if there is no window.
-fn rows_in(window: Option<&Window>) -> Range<u32> {
+fn rows_in(window: Option<&PictureWindow>) -> Range<u32> {
     window.map_or(0..0, |window| window.rows.clone())
 }
 
 /// The window in which a triangle may be seen whose corners have these pixels; `None` if no sample lies in it. If a corner is not in front of the
 /// camera, that is the window of the whole figure.
-fn window_around(corners: [Vec2; 3], view: &PinholeView, figure: &Window) -> Option<Window> {
+fn window_around(
+    corners: [Vec2; 3],
+    view: &PinholeView,
+    figure: &PictureWindow,
+) -> Option<PictureWindow> {
     /// Reach of a pixel's outermost samples, with a bit for rounding.
     const REACH: f32 = 0.375 + 0.01;
     let [a, b, c] = corners;
@@ -369,7 +427,7 @@ fn window_around(corners: [Vec2; 3], view: &PinholeView, figure: &Window) -> Opt
     };
     let columns = between(least.x, most.x, view.width)?;
     let rows = between(least.y, most.y, view.height)?;
-    Some(Window {
+    Some(PictureWindow {
         // A column more on both sides, for rounding errors.
         columns: columns.start.saturating_sub(1)..(columns.end + 1).min(view.width),
         rows,
