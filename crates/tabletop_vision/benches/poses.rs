@@ -1,0 +1,131 @@
+//! The errors of poses in pictures of random scenes, and the time that a picture takes: `cargo bench -p tabletop_vision [-- TASK [COUNT]]`.
+#![expect(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "a bench prints a table, and may panic"
+)]
+
+#[path = "../tests/poses/scenes.rs"]
+mod scenes;
+
+use std::time::Instant;
+
+use scenes::{Difficulty, TASKS};
+use tabletop_vision::{Eyes, KnownScenery};
+
+const EASY: Difficulty = Difficulty {
+    is_end: false,
+    noise: 0.0,
+    distractors: 0,
+    same_color: false,
+    light: 0.0,
+};
+
+const DIFFICULTIES: [(&str, Difficulty); 7] = [
+    ("beginning", EASY),
+    (
+        "end",
+        Difficulty {
+            is_end: true,
+            ..EASY
+        },
+    ),
+    (
+        "noise",
+        Difficulty {
+            noise: 10.0,
+            ..EASY
+        },
+    ),
+    ("light", Difficulty { light: 0.3, ..EASY }),
+    (
+        "distractors",
+        Difficulty {
+            distractors: 4,
+            ..EASY
+        },
+    ),
+    (
+        "same colour",
+        Difficulty {
+            same_color: true,
+            ..EASY
+        },
+    ),
+    (
+        "same, end",
+        Difficulty {
+            same_color: true,
+            is_end: true,
+            ..EASY
+        },
+    ),
+];
+
+fn main() {
+    let mut words = std::env::args()
+        .skip(1)
+        .filter(|word| !word.starts_with("--"));
+    let wanted = words.next().unwrap_or_default();
+    let count: u64 = words.next().map_or(100, |count| count.parse().unwrap());
+    let difficulty = words.next().unwrap_or_default();
+    let is_verbose = words.next().is_some();
+    println!(
+        "{:12} {:12} {:>8} {:>8} {:>8} {:>8} {:>7} {:>6} {:>6} {:>7} {:>7}",
+        "task",
+        "",
+        "median",
+        "99 %",
+        "deg 99 %",
+        "largest",
+        "wrong",
+        "silent",
+        "doubt",
+        "ms",
+        "most"
+    );
+    for task in TASKS.iter().filter(|task| task.name.contains(&wanted)) {
+        for (name, own) in DIFFICULTIES.iter().filter(|it| it.0.contains(&difficulty)) {
+            let (mut errors, mut times) = (Vec::new(), Vec::new());
+            for seed in 0..count {
+                let sample = task.sample(own, seed);
+                let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+                let start = Instant::now();
+                let seen = eyes.look(&sample.picture, &KnownScenery::default());
+                times.push(start.elapsed().as_secs_f64() * 1e3);
+                for error in sample.errors(&seen) {
+                    if is_verbose && (error.length > 0.02 || error.degrees > 1.0) {
+                        println!("  seed {seed}: {error:?}");
+                    }
+                    errors.push(error);
+                }
+            }
+            let part = |mut of: Vec<f32>, part: f32| {
+                of.sort_by(f32::total_cmp);
+                of[((of.len() - 1) as f32 * part).round() as usize]
+            };
+            let lengths: Vec<_> = errors.iter().map(|error| error.length).collect();
+            let degrees = errors.iter().map(|error| error.degrees).collect();
+            let wrong = errors.iter().filter(|error| error.length > 0.1);
+            let silent = wrong.clone().filter(|error| error.is_sure).count();
+            let doubted = errors
+                .iter()
+                .filter(|error| error.length <= 0.02 && !error.is_sure)
+                .count();
+            let percent = |count: usize| 100.0 * count as f64 / errors.len() as f64;
+            println!(
+                "{:12} {name:12} {:8.4} {:8.4} {:8.2} {:8.3} {:6.1}% {:5.1}% {:5.1}% {:7.1} {:7.1}",
+                task.name,
+                part(lengths.clone(), 0.5),
+                part(lengths.clone(), 0.99),
+                part(degrees, 0.99),
+                part(lengths, 1.0),
+                percent(wrong.count()),
+                percent(silent),
+                percent(doubted),
+                times.iter().sum::<f64>() / times.len() as f64,
+                times.iter().copied().fold(0.0, f64::max)
+            );
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Eyes: pictures in, poses of known objects out, one picture after the other.
+
+use bevy::math::Vec3;
+use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Scene};
+use tabletop_core::{Picture, Table};
+use tabletop_geometry::Pose;
+
+use crate::{
+    arrangement::Arrangement,
+    clutter::{Clutter, clutter},
+    known::{KnownObject, YawSymmetry},
+    refine::{Refinement, deviations},
+    residual::{OUTLIER, Residual},
+};
+
+/// Eyes that know some objects, and remember where they were in the last picture.
+#[derive(Clone, Debug)]
+pub struct Eyes {
+    objects: Vec<KnownObject>,
+    camera: Camera,
+    table: Table,
+    poses: Vec<Option<Pose>>,
+}
+
+/// What is in a picture besides the table and the objects, and known: it is drawn, and not estimated.
+#[derive(Clone, Debug, Default)]
+pub struct KnownScenery {
+    /// Surfaces, such as those of a robot's links at its joints.
+    pub figures: Vec<DrawnFigure>,
+    /// Solids.
+    pub solids: Vec<DrawnSolid>,
+}
+
+/// What eyes make of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Percept {
+    /// The objects, in the order in which the eyes know them.
+    pub objects: Vec<ObjectPercept>,
+    /// What is in the picture and is not known, largest first.
+    pub clutter: Vec<Clutter>,
+    /// Standard deviation of the noise in a part of a pixel, in grey levels.
+    pub noise: f32,
+}
+
+/// An object in a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObjectPercept {
+    /// Its pose in the table's frame, in units; that of the last picture if it is hidden, and `None` if it was never seen.
+    pub pose: Option<Pose>,
+    /// The uncertainty of its pose.
+    pub deviation: PoseDeviation,
+    /// How much of it is seen.
+    pub visibility: Visibility,
+    /// False if another pose would explain the picture as well, or none explains it well.
+    pub is_sure: bool,
+}
+
+/// The standard deviations of a pose, from the curvature of the residual.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoseDeviation {
+    /// Of the location, in units. That of Z is 0 for an object that stands on something.
+    pub location: Vec3,
+    /// Of the yaw, in rad; 0 if every yaw looks the same.
+    pub yaw: f32,
+}
+
+/// How much of an object is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// All, or nearly.
+    Seen,
+    /// A part.
+    PartlyHidden,
+    /// Nothing, or nearly.
+    Hidden,
+}
+
+/// The part of an object's pixels that are visible at least if it counts as seen, and if it does not count as hidden.
+const SEEN: f32 = 0.95;
+const HIDDEN: f32 = 0.03;
+/// The least part that is visible of an object whose pose is sure.
+const SURE_VISIBLE: f32 = 0.12;
+/// Step of the derivatives for uncertainties, in units: half a pixel.
+const STEP: f32 = 0.05;
+/// Variance of a part of a pixel that is there without noise: colours are whole numbers, and edges are smoothed by four samples.
+const ROUNDING: f32 = 1.0;
+
+impl Eyes {
+    /// Eyes for these objects on this table.
+    pub fn new(objects: Vec<KnownObject>, camera: Camera, table: Table) -> Self {
+        Self {
+            poses: vec![None; objects.len()],
+            objects,
+            camera,
+            table,
+        }
+    }
+
+    /// Forgets where objects were.
+    pub fn forget(&mut self) {
+        self.poses.fill(None);
+    }
+
+    /// Lets objects be where they are known to have been just before the next picture.
+    pub fn remember(&mut self, poses: impl IntoIterator<Item = Option<Pose>>) {
+        for (own, pose) in self.poses.iter_mut().zip(poses) {
+            *own = pose;
+        }
+    }
+
+    /// Looks at the next picture. A picture whose size is not the camera's shows nothing.
+    pub fn look(&mut self, picture: &Picture, scenery: &KnownScenery) -> Percept {
+        let is_of_camera = picture.width == self.camera.width
+            && picture.height == self.camera.height
+            && picture.rgb.len() == 3 * picture.depth.len()
+            && picture.depth.len() == picture.width as usize * picture.height as usize;
+        if !is_of_camera {
+            return self.blind();
+        }
+        let mut solids = vec![DrawnSolid::of_table(&self.table, 1)];
+        solids.extend(scenery.solids.iter().cloned());
+        let ground = Scene {
+            solids,
+            figures: scenery.figures.clone(),
+            markers: Vec::new(),
+        };
+        let residual = Residual::new(picture, &ground, self.camera);
+        let mut arrangement = Arrangement::empty(&self.objects, residual);
+        arrangement.find_all(&mut || 1.0);
+        arrangement.settle_all(3);
+        arrangement.reconsider();
+        let percepts = (0..self.objects.len()).map(|i| percept(&mut arrangement, i));
+        let objects: Vec<_> = percepts.collect();
+        let least = arrangement.unexplained();
+        let clutter = clutter(arrangement.residual.size(), |i| {
+            arrangement.square(i) > least
+        });
+        let noise = arrangement.noise.sqrt();
+        for (own, seen) in self.poses.iter_mut().zip(&objects) {
+            *own = seen.pose.or(*own);
+        }
+        Percept {
+            objects,
+            clutter,
+            noise,
+        }
+    }
+
+    fn blind(&self) -> Percept {
+        let hidden = |pose: &Option<Pose>| ObjectPercept {
+            pose: *pose,
+            ..ObjectPercept::HIDDEN
+        };
+        Percept {
+            objects: self.poses.iter().map(hidden).collect(),
+            clutter: Vec::new(),
+            noise: 0.0,
+        }
+    }
+}
+
+impl ObjectPercept {
+    const HIDDEN: Self = Self {
+        pose: None,
+        deviation: PoseDeviation {
+            location: Vec3::INFINITY,
+            yaw: f32::INFINITY,
+        },
+        visibility: Visibility::Hidden,
+        is_sure: false,
+    };
+}
+
+fn percept(arrangement: &mut Arrangement, object: usize) -> ObjectPercept {
+    let Some((placement, window)) =
+        arrangement.placements[object].zip(arrangement.window(object).cloned())
+    else {
+        return ObjectPercept::HIDDEN;
+    };
+    let known = &arrangement.objects[object];
+    let is_bad = arrangement.is_bad(object);
+    // Alone, to count its pixels.
+    arrangement.residual.keep(&[], &window);
+    let mut refinement = Refinement {
+        residual: &mut arrangement.residual,
+        object: known,
+        is_free: false,
+    };
+    let alone = refinement.try_at(&placement, OUTLIER).pixels;
+    let fit = arrangement.fit(object);
+    let visible = fit.pixels as f32 / alone.max(1) as f32;
+    let mut refinement = Refinement {
+        residual: &mut arrangement.residual,
+        object: known,
+        is_free: false,
+    };
+    let equations = refinement.equations(&placement, STEP, OUTLIER);
+    let variance = arrangement.noise.max(ROUNDING);
+    let ray = arrangement.ray_to(placement.location);
+    let stance = known.stance(&placement);
+    let [x, y, z, yaw] = deviations(&equations, variance, ray, stance.radius);
+    ObjectPercept {
+        pose: Some(known.pose(&placement)),
+        deviation: PoseDeviation {
+            location: Vec3::new(x, y, z),
+            yaw: match stance.symmetry {
+                YawSymmetry::Any => 0.0,
+                YawSymmetry::Turns(_) => yaw,
+            },
+        },
+        visibility: match visible {
+            visible if visible >= SEEN => Visibility::Seen,
+            visible if visible > HIDDEN => Visibility::PartlyHidden,
+            _ => Visibility::Hidden,
+        },
+        is_sure: !is_bad && visible > SURE_VISIBLE,
+    }
+}

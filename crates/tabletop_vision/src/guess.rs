@@ -1,0 +1,257 @@
+//! Guesses of where an object is: from the pixels of its colour, by the rays through them.
+
+use bevy::math::Vec2;
+use tabletop_camera::{DrawnSolid, PictureWindow};
+
+use crate::{
+    known::{KnownObject, Placement},
+    refine::{COARSE, Refinement},
+    residual::{OUTLIER, Residual, Trial},
+    segment::Blob,
+};
+
+/// Largest number of blobs, and of seeds in a blob.
+const MOST_BLOBS: usize = 5;
+const MOST_SEEDS: usize = 16;
+/// Least number of pixels of a blob.
+const LEAST_BLOB: usize = 4;
+/// Distance of the heights that are tried, in units.
+const HEIGHT_STEP: f32 = 0.6;
+/// Angle between the yaws that are tried, in rad.
+const YAW_STEP: f32 = 0.4;
+/// Number of guesses that are refined for each seed.
+const REFINED: usize = 2;
+
+/// A placement that may be right.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    pub placement: Placement,
+    /// The part that it explains of what it should: of the loss of the pixels that may show the object, and of its own.
+    pub score: f32,
+    /// The window in which it may be seen.
+    pub window: PictureWindow,
+}
+
+/// The search for an object.
+pub(crate) struct Guess<'g, 'a, 'p> {
+    pub residual: &'g mut Residual<'p>,
+    pub object: &'a KnownObject,
+    /// The pixels that may show it, with their losses.
+    pub blobs: Vec<(Blob, f32)>,
+    /// The other objects' solids, and the windows in which they may be seen.
+    pub others: Vec<(PictureWindow, Vec<DrawnSolid>)>,
+    /// The largest height, in units, of what it may stand on.
+    pub highest: f32,
+}
+
+/// A point of the picture about which an object may be seen.
+struct Seed {
+    pixel: Vec2,
+    /// The loss of the pixels that it should explain.
+    open: f32,
+}
+
+impl<'p> Guess<'_, '_, 'p> {
+    /// The best candidate for the object.
+    pub fn best(&mut self) -> Option<Candidate> {
+        let mut best: Option<Candidate> = None;
+        for seed in self.seeds() {
+            for candidate in self.candidates(&seed) {
+                if best
+                    .as_ref()
+                    .is_none_or(|best| candidate.score > best.score)
+                {
+                    best = Some(candidate);
+                }
+            }
+        }
+        best
+    }
+
+    fn seeds(&mut self) -> Vec<Seed> {
+        let width = self.residual.seen().width as usize;
+        let blobs = std::mem::take(&mut self.blobs);
+        let mut seeds = Vec::new();
+        for (blob, open) in blobs.iter().take(MOST_BLOBS) {
+            if blob.pixels.len() < LEAST_BLOB {
+                continue;
+            }
+            let middle = middle_of(&blob.pixels, width);
+            let expected = self.pixels_at(middle).max(LEAST_BLOB as f32);
+            seeds.push(Seed {
+                pixel: middle,
+                open: *open,
+            });
+            if blob.pixels.len() as f32 > 1.4 * expected {
+                let spacing = (0.6 * expected.sqrt()).max(2.0) as usize;
+                let parts = parts_of(&blob.pixels, width, spacing);
+                seeds.extend(
+                    parts
+                        .into_iter()
+                        .take(MOST_SEEDS)
+                        .map(|pixel| Seed { pixel, open: *open }),
+                );
+            }
+        }
+        // An object behind another one shows in several places.
+        if blobs.len() > 1 {
+            let pixels: Vec<_> = blobs
+                .iter()
+                .flat_map(|(blob, _)| blob.pixels.iter().copied())
+                .collect();
+            seeds.push(Seed {
+                pixel: middle_of(&pixels, width),
+                open: blobs.iter().map(|(_, open)| open).sum(),
+            });
+        }
+        seeds
+    }
+
+    /// About how many pixels show the object if it is seen about this one.
+    fn pixels_at(&self, pixel: Vec2) -> f32 {
+        let solids = self.solids(&self.at(pixel, 0, 0.0, 0.0));
+        let window = self.residual.window_of(&solids);
+        window.map_or(0.0, |window| 0.6 * window.area() as f32)
+    }
+
+    /// The placement whose middle is seen at a pixel, with its lowest point at this height.
+    fn at(&self, pixel: Vec2, stance: usize, height: f32, yaw: f32) -> Placement {
+        let own = &self.object.stances()[stance];
+        let middle = height + (own.high - own.low) / 2.0;
+        let (eye, ray) = (self.residual.eye(), self.residual.camera.ray_through(pixel));
+        let down = if ray.z < -1e-3 { -ray.z } else { 1e-3 };
+        let location = eye + ray * ((eye.z - middle) / down).clamp(0.0, 1e3);
+        Placement {
+            location: location.truncate().extend(height - own.low),
+            yaw,
+            stance,
+        }
+    }
+
+    fn solids(&self, placement: &Placement) -> Vec<DrawnSolid> {
+        let mut solids = Vec::new();
+        self.object.draw(placement, 1, &mut solids);
+        solids
+    }
+
+    fn window_at(&self, placement: &Placement) -> Option<PictureWindow> {
+        self.residual.window_of(&self.solids(placement))
+    }
+
+    /// Keeps all other objects, where this one may be.
+    fn keep_about(&mut self, seed: &Seed) -> Option<()> {
+        let windows = (0..self.object.stances().len())
+            .flat_map(|stance| [0.0, self.highest].map(|height| (stance, height)))
+            .filter_map(|(stance, height)| {
+                self.window_at(&self.at(seed.pixel, stance, height, 0.4))
+            });
+        let around = windows.reduce(|one, other| one.joined(&other))?;
+        let around = around.widened(10, self.residual.size());
+        let others = self.others.iter();
+        let near = others.filter(|(window, _)| !window.intersection(&around).is_empty());
+        let solids: Vec<_> = near
+            .flat_map(|(_, solids)| solids.iter().cloned())
+            .collect();
+        self.residual.keep(&solids, &around);
+        Some(())
+    }
+
+    fn candidates(&mut self, seed: &Seed) -> Vec<Candidate> {
+        if self.keep_about(seed).is_none() {
+            return Vec::new();
+        }
+        let mut tried = self.tried(seed);
+        tried.sort_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+        let mut picked: Vec<Placement> = Vec::new();
+        for (placement, _) in tried {
+            let differs = picked.iter().all(|other| {
+                other.stance != placement.stance
+                    || (other.location.z - placement.location.z).abs() > HEIGHT_STEP / 2.0
+                    || (other.yaw - placement.yaw).abs() > YAW_STEP / 2.0
+            });
+            if differs && picked.len() < REFINED {
+                picked.push(placement);
+            }
+        }
+        let candidates = picked
+            .into_iter()
+            .filter_map(|placement| self.candidate(seed, placement));
+        candidates.collect()
+    }
+
+    /// Placements about a seed: first on the table with all yaws, then with the best of these at other heights.
+    fn tried(&mut self, seed: &Seed) -> Vec<(Placement, Trial)> {
+        let mut tried = Vec::new();
+        for stance in 0..self.object.stances().len() {
+            let period = self.object.stances()[stance].symmetry.period();
+            let yaws = period.map_or(1, |period| (period / YAW_STEP).ceil() as usize);
+            let step = period.unwrap_or(0.0) / yaws as f32;
+            let mut on_table: Vec<_> = (0..yaws)
+                .map(|i| {
+                    let placement = self.at(seed.pixel, stance, 0.0, i as f32 * step);
+                    (placement, self.trial(&placement))
+                })
+                .collect();
+            on_table.sort_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+            let best: Vec<_> = on_table.iter().take(2).map(|(it, _)| it.yaw).collect();
+            tried.append(&mut on_table);
+            let mut height = HEIGHT_STEP;
+            while height <= self.highest {
+                for &yaw in &best {
+                    let placement = self.at(seed.pixel, stance, height, yaw);
+                    tried.push((placement, self.trial(&placement)));
+                }
+                height += HEIGHT_STEP;
+            }
+        }
+        tried
+    }
+
+    fn refinement(&mut self) -> Refinement<'_, 'p> {
+        Refinement {
+            residual: self.residual,
+            object: self.object,
+            is_free: !self.object.is_fixed(),
+        }
+    }
+
+    fn trial(&mut self, placement: &Placement) -> Trial {
+        self.refinement().try_at(placement, OUTLIER)
+    }
+
+    fn candidate(&mut self, seed: &Seed, placement: Placement) -> Option<Candidate> {
+        let mut refinement = self.refinement();
+        let (mut placement, mut trial) = refinement.refined(placement, &COARSE);
+        let lowest = -self.object.stance(&placement).low;
+        if placement.location.z < lowest {
+            placement = placement.at_height(lowest, self.residual.eye());
+            trial = self.trial(&placement);
+        }
+        let window = self.window_at(&placement)?;
+        (trial.gain < 0.0).then(|| Candidate {
+            placement,
+            score: -trial.gain / (seed.open + trial.misfit).max(1.0),
+            window,
+        })
+    }
+}
+
+fn middle_of(pixels: &[usize], width: usize) -> Vec2 {
+    let sum: Vec2 = pixels
+        .iter()
+        .map(|pixel| Vec2::new((pixel % width) as f32, (pixel / width) as f32))
+        .sum();
+    sum / pixels.len().max(1) as f32
+}
+
+/// The middles of the parts of a blob in the cells of a grid, fullest first.
+fn parts_of(pixels: &[usize], width: usize, spacing: usize) -> Vec<Vec2> {
+    let mut cells = std::collections::BTreeMap::<(usize, usize), Vec<usize>>::new();
+    for &pixel in pixels {
+        let cell = (pixel / width / spacing, pixel % width / spacing);
+        cells.entry(cell).or_default().push(pixel);
+    }
+    let mut cells: Vec<_> = cells.into_values().collect();
+    cells.sort_by_key(|cell| std::cmp::Reverse(cell.len()));
+    cells.iter().map(|cell| middle_of(cell, width)).collect()
+}

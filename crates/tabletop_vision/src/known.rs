@@ -1,0 +1,348 @@
+//! Known objects: what they look like, and how they may stand.
+
+use std::f32::consts::TAU;
+
+use bevy::math::{Quat, Vec3};
+use tabletop_camera::DrawnSolid;
+use tabletop_core::Shape;
+use tabletop_geometry::{PlacedSolid, Pose, Primitive, Rgb, Solid, turn_about};
+
+/// An object whose shape and colours are known, and whose pose is not.
+///
+/// ```
+/// use bevy::math::Vec3;
+/// use tabletop_core::Shape;
+/// use tabletop_geometry::Rgb;
+/// use tabletop_vision::{KnownObject, YawSymmetry};
+///
+/// let brick = Shape::Block {
+///     span: Vec3::new(3.0, 1.0, 1.0),
+///     color: Rgb::RED,
+/// };
+/// assert_eq!(KnownObject::of(&brick).symmetry(), YawSymmetry::Turns(2));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownObject {
+    drawn: Vec<Primitive>,
+    touched: Vec<Primitive>,
+    stances: Vec<Stance>,
+    is_fixed: bool,
+}
+
+/// The turns about the vertical after which an object looks the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum YawSymmetry {
+    /// All: its yaw cannot be seen, and counts as 0.
+    Any,
+    /// Those by a whole number of parts of a full turn, which is divided into this many; 1 for an object without symmetry.
+    Turns(u32),
+}
+
+/// One way in which an object stands: which of its sides is down.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stance {
+    rotation: Quat,
+    /// Its solids after this rotation, about the object's origin.
+    drawn: Vec<Primitive>,
+    touched: Vec<Primitive>,
+    pub symmetry: YawSymmetry,
+    /// Lowest and highest Z relative to the origin, and the largest distance from the vertical through it.
+    pub low: f32,
+    pub high: f32,
+    pub radius: f32,
+}
+
+/// A place for an object: where it is, how it is turned about the vertical, and the number of its stance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Placement {
+    pub location: Vec3,
+    pub yaw: f32,
+    pub stance: usize,
+}
+
+/// The largest difference, in units, between points that count as the same.
+const SAME: f32 = 2e-3;
+
+impl KnownObject {
+    /// An object of this shape that stands as in its own frame.
+    pub fn of(shape: &Shape) -> Self {
+        let (drawn, touched) = (shape.drawn(), shape.colliding());
+        let stances = vec![Stance::of(&drawn, &touched, Quat::IDENTITY)];
+        Self {
+            drawn,
+            touched,
+            stances,
+            is_fixed: false,
+        }
+    }
+
+    /// The same object, which may stand in each of these ways: rotations of the object, each of which may be turned about the vertical.
+    /// Without any, it stands as in its own frame.
+    #[must_use]
+    pub fn standing(mut self, rotations: impl IntoIterator<Item = Quat>) -> Self {
+        let stance = |rotation| Stance::of(&self.drawn, &self.touched, rotation);
+        let stances: Vec<_> = rotations.into_iter().map(stance).collect();
+        if !stances.is_empty() {
+            self.stances = stances;
+        }
+        self
+    }
+
+    /// The same object, which stands on the table itself, and never on another object.
+    #[must_use]
+    pub const fn fixed(mut self) -> Self {
+        self.is_fixed = true;
+        self
+    }
+
+    /// Its symmetry about the vertical, as it stands first of all.
+    pub fn symmetry(&self) -> YawSymmetry {
+        self.stances[0].symmetry
+    }
+
+    pub(crate) const fn is_fixed(&self) -> bool {
+        self.is_fixed
+    }
+
+    pub(crate) fn stances(&self) -> &[Stance] {
+        &self.stances
+    }
+
+    pub(crate) fn stance(&self, placement: &Placement) -> &Stance {
+        &self.stances[placement.stance]
+    }
+
+    /// The colour of its largest solid.
+    pub(crate) fn color(&self) -> Rgb {
+        let largest = self
+            .drawn
+            .iter()
+            .max_by(|a, b| a.solid.volume().total_cmp(&b.solid.volume()));
+        largest.map_or(Rgb::GRAY, |largest| largest.color)
+    }
+
+    /// The colours of its solids, each once.
+    pub(crate) fn colors(&self) -> Vec<Rgb> {
+        let mut colors: Vec<Rgb> = Vec::new();
+        for solid in &self.drawn {
+            if !colors.contains(&solid.color) {
+                colors.push(solid.color);
+            }
+        }
+        colors
+    }
+
+    /// True if the two cannot be told apart.
+    pub(crate) fn looks_like(&self, other: &Self) -> bool {
+        self == other
+    }
+
+    /// The pose of a placement.
+    pub(crate) fn pose(&self, placement: &Placement) -> Pose {
+        let stance = self.stance(placement);
+        Pose::new(
+            placement.location,
+            (turn_about(Vec3::Z, placement.yaw) * stance.rotation).normalize(),
+        )
+    }
+
+    /// The placement nearest to a pose.
+    pub(crate) fn placement(&self, pose: Pose) -> Placement {
+        let near = |(number, stance): (usize, &Stance)| {
+            let turn = pose.rotation * stance.rotation.inverse();
+            // The turn about the vertical that is nearest to it.
+            let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
+            let upright = turn.z * turn.z + turn.w * turn.w;
+            (
+                upright,
+                Placement {
+                    location: pose.location,
+                    yaw: stance.symmetry.reduced(yaw),
+                    stance: number,
+                },
+            )
+        };
+        let nearest = self.stances.iter().enumerate().map(near);
+        nearest
+            .reduce(|best, next| if next.0 > best.0 + 1e-6 { next } else { best })
+            .map_or(Placement::at(pose.location), |(_, placement)| placement)
+    }
+
+    /// Adds its solids at a placement to a list.
+    pub(crate) fn draw(&self, placement: &Placement, object: u32, solids: &mut Vec<DrawnSolid>) {
+        let body = placement.upright();
+        let stance = self.stance(placement);
+        solids.extend((stance.drawn.iter()).map(|solid| DrawnSolid::of(body, solid, object)));
+    }
+
+    /// The convex solids that others touch, at a placement.
+    pub(crate) fn touched(&self, placement: &Placement) -> Vec<PlacedSolid> {
+        let body = placement.upright();
+        let solids = self.stance(placement).touched.iter();
+        solids.map(|solid| PlacedSolid::of(solid, body)).collect()
+    }
+}
+
+impl Placement {
+    /// At a location, not turned, in the first stance.
+    pub const fn at(location: Vec3) -> Self {
+        Self {
+            location,
+            yaw: 0.0,
+            stance: 0,
+        }
+    }
+
+    /// The pose of the frame in which the solids of its stance are given.
+    fn upright(&self) -> Pose {
+        Pose::new(self.location, turn_about(Vec3::Z, self.yaw))
+    }
+
+    /// The same placement elsewhere on the ray from the eye, with its origin at this height.
+    pub fn at_height(&self, z: f32, eye: Vec3) -> Self {
+        let down = eye.z - self.location.z;
+        let scale = if down.abs() > 1e-3 {
+            (eye.z - z) / down
+        } else {
+            1.0
+        };
+        let location = eye + (self.location - eye) * scale;
+        Self {
+            location: location.truncate().extend(z),
+            ..*self
+        }
+    }
+}
+
+impl YawSymmetry {
+    /// The angle, in rad, after which the object looks the same; none if any does.
+    pub(crate) fn period(self) -> Option<f32> {
+        match self {
+            Self::Any => None,
+            Self::Turns(turns) => Some(TAU / turns as f32),
+        }
+    }
+
+    /// The least angle, in rad, after which the object looks as after `yaw`: at most half of its period to either side.
+    pub fn reduced(self, yaw: f32) -> f32 {
+        match self.period() {
+            None => 0.0,
+            Some(period) => yaw - (yaw / period).round() * period,
+        }
+    }
+}
+
+impl Stance {
+    fn of(drawn: &[Primitive], touched: &[Primitive], rotation: Quat) -> Self {
+        let turn = Pose::new(Vec3::ZERO, rotation);
+        let turned = |solids: &[Primitive]| -> Vec<Primitive> {
+            let turned = solids.iter().map(|solid| Primitive {
+                pose: turn * solid.pose,
+                ..solid.clone()
+            });
+            turned.collect()
+        };
+        let (drawn, touched) = (turned(drawn), turned(touched));
+        let placed: Vec<_> = drawn
+            .iter()
+            .map(|solid| PlacedSolid::of(solid, Pose::IDENTITY))
+            .collect();
+        let [low, high] = match placed.is_empty() {
+            true => [0.0; 2],
+            false => PlacedSolid::extent(&placed, Vec3::Z),
+        };
+        let sides = (0..16).map(|side| turn_about(Vec3::Z, side as f32 * TAU / 16.0) * Vec3::X);
+        let reach = sides.flat_map(|way| placed.iter().map(move |it| it.farthest(way).dot(way)));
+        Self {
+            rotation,
+            symmetry: symmetry(&drawn),
+            radius: reach.fold(0.05, f32::max),
+            drawn,
+            touched,
+            low,
+            high,
+        }
+    }
+}
+
+fn symmetry(solids: &[Primitive]) -> YawSymmetry {
+    const MOST_TURNS: u32 = 12;
+    if solids.iter().all(is_round) {
+        return YawSymmetry::Any;
+    }
+    let turns = (2..=MOST_TURNS).rev().find(|&turns| {
+        let turn = Pose::new(Vec3::ZERO, turn_about(Vec3::Z, TAU / turns as f32));
+        solids.iter().all(|solid| {
+            let turned = Primitive {
+                pose: turn * solid.pose,
+                ..solid.clone()
+            };
+            solids.iter().any(|other| looks_the_same(&turned, other))
+        })
+    });
+    YawSymmetry::Turns(turns.unwrap_or(1))
+}
+
+/// True if a solid looks the same after every turn about the vertical through the origin.
+fn is_round(solid: &Primitive) -> bool {
+    let is_central = solid.pose.location.truncate().length() < SAME;
+    let is_upright = |axis: Vec3| (solid.pose.rotation * axis).truncate().length() < SAME;
+    match &solid.solid {
+        Solid::Ball(_) => is_central,
+        Solid::Cylinder { .. } => is_central && is_upright(Vec3::Y),
+        Solid::Polyhedron(polyhedron) => is_central && polyhedron.axis().is_some_and(is_upright),
+        Solid::Cuboid(_) => false,
+    }
+}
+
+fn looks_the_same(one: &Primitive, other: &Primitive) -> bool {
+    if one.color != other.color || one.pose.location.distance(other.pose.location) > SAME {
+        return false;
+    }
+    let axis = |solid: &Primitive| solid.pose.rotation * Vec3::Y;
+    match (&one.solid, &other.solid) {
+        (Solid::Ball(a), Solid::Ball(b)) => (a - b).abs() < SAME,
+        (
+            Solid::Cylinder {
+                radius: a,
+                yspan: a_span,
+            },
+            Solid::Cylinder {
+                radius: b,
+                yspan: b_span,
+            },
+        ) => {
+            (a - b).abs() < SAME
+                && (a_span - b_span).abs() < SAME
+                && axis(one).cross(axis(other)).length() < SAME
+        }
+        (Solid::Cuboid(a), Solid::Cuboid(b)) => is_same_set(&corners(one, *a), &corners(other, *b)),
+        (Solid::Polyhedron(a), Solid::Polyhedron(b)) => {
+            let corners = |polyhedron: &tabletop_geometry::Polyhedron, solid: &Primitive| {
+                let corners = polyhedron.corners().iter();
+                corners
+                    .map(|&corner| solid.pose * corner)
+                    .collect::<Vec<_>>()
+            };
+            is_same_set(&corners(a, one), &corners(b, other))
+        }
+        (Solid::Ball(_) | Solid::Cylinder { .. } | Solid::Cuboid(_) | Solid::Polyhedron(_), _) => {
+            false
+        }
+    }
+}
+
+fn corners(solid: &Primitive, span: Vec3) -> Vec<Vec3> {
+    let corner = |i: u32| {
+        let side = |axis: u32| if i >> axis & 1 == 1 { 0.5 } else { -0.5 };
+        solid.pose * (span * Vec3::new(side(0), side(1), side(2)))
+    };
+    (0..8).map(corner).collect()
+}
+
+fn is_same_set(one: &[Vec3], other: &[Vec3]) -> bool {
+    one.len() == other.len()
+        && one
+            .iter()
+            .all(|a| other.iter().any(|b| a.distance(*b) < SAME))
+}

@@ -1,0 +1,239 @@
+//! Refinement of a placement by least squares on differences of pixels (Levenberg and Marquardt's), with derivatives from pictures a small step
+//! away to both sides: smooth edges make that exact to a small part of a pixel.
+
+use bevy::math::Vec3;
+use tabletop_camera::DrawnSolid;
+
+use crate::{
+    known::{KnownObject, Placement, YawSymmetry},
+    normal::NormalEquations,
+    residual::{OUTLIER, Residual, TRIED, Trial, for_pixels},
+};
+
+/// The parameters: along X and Y, along the ray from the eye, and about the vertical.
+const PARAMETERS: usize = 4;
+pub(crate) type PoseEquations = NormalEquations<PARAMETERS>;
+
+/// A stage of a refinement.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage {
+    /// Step of the derivatives, in units.
+    step: f32,
+    outlier: f32,
+    /// Largest number of steps.
+    most: u32,
+}
+
+/// From a rough guess, some pixels off. A pixel is about 0.1 units.
+pub(crate) const COARSE: [Stage; 2] = [
+    Stage {
+        step: 0.2,
+        outlier: 100_000.0,
+        most: 5,
+    },
+    Stage {
+        step: 0.08,
+        outlier: 30_000.0,
+        most: 3,
+    },
+];
+
+/// From a guess less than a pixel off.
+pub(crate) const FINE: [Stage; 2] = [
+    Stage {
+        step: 0.06,
+        outlier: OUTLIER,
+        most: 4,
+    },
+    Stage {
+        step: 0.02,
+        outlier: OUTLIER,
+        most: 4,
+    },
+];
+
+/// An object that is moved over what is kept.
+pub(crate) struct Refinement<'a, 'p> {
+    pub residual: &'a mut Residual<'p>,
+    pub object: &'a KnownObject,
+    /// True if its height is estimated, too.
+    pub is_free: bool,
+}
+
+impl Refinement<'_, '_> {
+    /// The solids of the object at a placement.
+    fn solids(&self, placement: &Placement) -> Vec<DrawnSolid> {
+        let mut solids = Vec::new();
+        self.object.draw(placement, TRIED, &mut solids);
+        solids
+    }
+
+    /// Tries a placement.
+    pub fn try_at(&mut self, placement: &Placement, outlier: f32) -> Trial {
+        let solids = self.solids(placement);
+        self.residual.try_solids(&solids, outlier)
+    }
+
+    /// The best placement near one.
+    pub fn refined(&mut self, mut placement: Placement, stages: &[Stage]) -> (Placement, Trial) {
+        for stage in stages {
+            let mut best = self.try_at(&placement, stage.outlier).gain;
+            for _ in 0..stage.most {
+                let equations = self.equations(&placement, stage.step, stage.outlier);
+                let better = [1e-3, 1e-1, 1.0].into_iter().find_map(|damping| {
+                    let next = self.stepped(&placement, &equations.step(damping), stage.step);
+                    let gain = self.try_at(&next, stage.outlier).gain;
+                    (gain < best).then_some((next, gain))
+                });
+                let Some((next, gain)) = better else {
+                    break;
+                };
+                let moved = next.location.distance(placement.location)
+                    + (next.yaw - placement.yaw).abs() * self.object.stance(&placement).radius;
+                (placement, best) = (next, gain);
+                if moved < 0.02 * stage.step {
+                    break;
+                }
+            }
+        }
+        let stance = self.object.stance(&placement);
+        placement.yaw = stance.symmetry.reduced(placement.yaw);
+        let trial = self.try_at(&placement, OUTLIER);
+        (placement, trial)
+    }
+
+    /// Steps along axes and about the vertical, smaller and smaller, as long as they reduce the loss: what derivatives over finite steps leave.
+    pub fn polished(&mut self, mut placement: Placement, largest: f32) -> (Placement, Trial) {
+        /// The smallest step, in units.
+        const LEAST: f32 = 0.000_4;
+        let mut best = self.try_at(&placement, OUTLIER);
+        let mut size = largest;
+        while size > LEAST {
+            let mut is_better = false;
+            for parameter in self.parameters(&placement) {
+                for side in [-1.0, 1.0] {
+                    let next = self.moved(&placement, parameter, side * size);
+                    let trial = self.try_at(&next, OUTLIER);
+                    if trial.gain < best.gain {
+                        (placement, best, is_better) = (next, trial, true);
+                        break;
+                    }
+                }
+            }
+            if !is_better {
+                size *= 0.5;
+            }
+        }
+        let stance = self.object.stance(&placement);
+        placement.yaw = stance.symmetry.reduced(placement.yaw);
+        (placement, best)
+    }
+
+    /// The normal equations at a placement.
+    pub fn equations(&mut self, placement: &Placement, step: f32, outlier: f32) -> PoseEquations {
+        let mut equations = PoseEquations::default();
+        let Some(window) = self.residual.window_of(&self.solids(placement)) else {
+            return equations;
+        };
+        let window = window.widened(3, self.residual.size());
+        let width = self.residual.seen().width;
+        let pixels = window.area();
+        let mut derivatives = vec![[0.0_f32; PARAMETERS]; 3 * pixels];
+        for parameter in self.parameters(placement) {
+            for (side, factor) in [(step, 0.5 / step), (-step, -0.5 / step)] {
+                let solids = self.solids(&self.moved(placement, parameter, side));
+                let drawn = self.residual.draw(&solids, &window);
+                let mut own = derivatives.iter_mut();
+                for_pixels(&window, width, |i| {
+                    for part in &drawn.rgb[3 * i..3 * i + 3] {
+                        if let Some(derivative) = own.next() {
+                            derivative[parameter] += f32::from(*part) * factor;
+                        }
+                    }
+                });
+            }
+        }
+        let solids = self.solids(placement);
+        let seen = self.residual.seen();
+        let drawn = self.residual.draw(&solids, &window);
+        let mut own = derivatives.chunks_exact(3);
+        for_pixels(&window, width, |i| {
+            let Some(own) = own.next() else { return };
+            let parts = |rgb: &[u8]| [0, 1, 2].map(|part| f32::from(rgb[3 * i + part]));
+            let (shown, seen) = (parts(&drawn.rgb), parts(&seen.rgb));
+            let differences = [0, 1, 2].map(|part| seen[part] - shown[part]);
+            let square: f32 = differences.iter().map(|it| it * it).sum();
+            let weight = outlier / (square + outlier);
+            for (derivatives, difference) in own.iter().zip(differences) {
+                equations.add(derivatives, difference, weight * weight);
+            }
+        });
+        equations
+    }
+
+    /// The parameters that are estimated.
+    fn parameters(&self, placement: &Placement) -> impl Iterator<Item = usize> + use<> {
+        let is_free = self.is_free;
+        let is_round = self.object.stance(placement).symmetry == YawSymmetry::Any;
+        (0..PARAMETERS).filter(move |&parameter| match parameter {
+            2 => is_free,
+            3 => !is_round,
+            _ => true,
+        })
+    }
+
+    /// The placement after a change of one parameter that moves the object by about this length.
+    fn moved(&self, placement: &Placement, parameter: usize, by: f32) -> Placement {
+        let mut change = [0.0; PARAMETERS];
+        change[parameter] = by;
+        self.changed(placement, &change)
+    }
+
+    /// The placement after a change of all parameters, as lengths.
+    fn changed(&self, placement: &Placement, by: &[f32; PARAMETERS]) -> Placement {
+        let ray = (placement.location - self.residual.eye()).normalize_or(Vec3::NEG_Z);
+        let radius = self.object.stance(placement).radius;
+        Placement {
+            location: placement.location + Vec3::new(by[0], by[1], 0.0) + ray * by[2] * ALONG_RAY,
+            yaw: placement.yaw + by[3] / radius,
+            ..*placement
+        }
+    }
+
+    /// The placement after a step of all parameters, none longer than a few of the derivatives' steps.
+    fn stepped(&self, placement: &Placement, step: &[f64; PARAMETERS], size: f32) -> Placement {
+        let most = 3.0 * size;
+        self.changed(placement, &step.map(|by| (by as f32).clamp(-most, most)))
+    }
+}
+
+/// Motion along the ray, in units, that changes the picture about as much as a unit across it: distances are about ten times an object's size.
+const ALONG_RAY: f32 = 5.0;
+
+/// Standard deviations of X, Y, Z in units and of yaw in rad, from the equations at a placement and the variance of a pixel.
+pub(crate) fn deviations(
+    equations: &PoseEquations,
+    variance: f32,
+    ray: Vec3,
+    radius: f32,
+) -> [f32; PARAMETERS] {
+    let [x, y, along, yaw] = equations.variances().map(|it| (it as f32) * variance);
+    let along = along * ALONG_RAY * ALONG_RAY;
+    let part = |axis: f32| {
+        if along.is_finite() {
+            axis * axis * along
+        } else {
+            0.0
+        }
+    };
+    [
+        (x + part(ray.x)).sqrt(),
+        (y + part(ray.y)).sqrt(),
+        part(ray.z).sqrt(),
+        if yaw.is_finite() {
+            yaw.sqrt() / radius
+        } else {
+            0.0
+        },
+    ]
+}

@@ -1,0 +1,48 @@
+//! Supports: the heights at which an object may stand.
+
+use tabletop_geometry::PlacedSolid;
+
+use crate::known::{KnownObject, Placement};
+
+/// Largest gap, seen from above and in units, between solids that may stand on each other: estimates are not exact.
+const BESIDE: f32 = 0.06;
+/// Heights nearer to each other than this, in units, are the same.
+const SAME_HEIGHT: f32 = 1e-3;
+
+/// The heights of an object's origin at which it would stand on the table or on one of the others, at this place, from the lowest on.
+pub(crate) fn heights<'o>(
+    object: &KnownObject,
+    placement: &Placement,
+    others: impl IntoIterator<Item = (&'o KnownObject, &'o Placement)>,
+) -> Vec<f32> {
+    let stance = object.stance(placement);
+    let mut heights = vec![-stance.low];
+    if object.is_fixed() {
+        return heights;
+    }
+    let own = object.touched(placement);
+    for (other, at) in others {
+        let between = at.location.truncate() - placement.location.truncate();
+        if between.length() > stance.radius + other.stance(at).radius + BESIDE {
+            continue;
+        }
+        for below in other.touched(at) {
+            let top = below.heights()[1];
+            for solid in &own {
+                let height = top - (solid.heights()[0] - placement.location.z);
+                let is_new = heights
+                    .iter()
+                    .all(|known| (known - height).abs() > SAME_HEIGHT);
+                if is_new && is_above(solid, &below) {
+                    heights.push(height);
+                }
+            }
+        }
+    }
+    heights.sort_by(f32::total_cmp);
+    heights
+}
+
+fn is_above(solid: &PlacedSolid, below: &PlacedSolid) -> bool {
+    solid.gap_from_above(below) < BESIDE
+}
