@@ -45,6 +45,7 @@ mod soak;
 mod terminal;
 mod validate;
 mod video;
+mod watch;
 mod window;
 
 use std::{ffi::OsString, process::ExitCode};
@@ -78,6 +79,11 @@ enum Command {
     Replay(replay::ReplayArgs),
     /// Print the task that a recording shows, step by step
     Explain(explain::ExplainArgs),
+    /// Print the task that pictures show
+    ///
+    /// Shapes and colours of the objects are known; their places, the motions and the acts are seen in the pictures of the head camera alone. If the recording tells
+    /// the truth, the errors follow.
+    Watch(watch::WatchArgs),
     /// Set requirements on the objects of a recording's task, so that others can take their places
     Require(require::RequireArgs),
     /// Let the robot imitate the task that a recording shows
@@ -158,6 +164,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Explain(args)) => explain::explain(&args),
+        Some(Command::Watch(args)) => watch::watch(&args),
         Some(Command::Require(args)) => require::require(&args),
         Some(Command::Imitate(args)) => imitate::run(&args),
         Some(Command::Multiply(args)) => multiply::run(&args),

@@ -59,7 +59,7 @@ pub use tabletop_drive as drive;
 pub use tabletop_environment as environment;
 pub use tabletop_episodes::{
     Collection, CollectionError, imitation, multiplication, robot_body, run_episodes,
-    scene_at_beginning, shown_task, soak,
+    scene_at_beginning, shown_task, soak, watching,
 };
 pub use tabletop_export as export;
 pub use tabletop_film as film;

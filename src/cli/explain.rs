@@ -91,7 +91,7 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The steps with their numbers, and the operations and pushes between them.
-fn reported(task: &Task) -> Vec<String> {
+pub(super) fn reported(task: &Task) -> Vec<String> {
     let steps = task.steps.iter().map(|step| (step.grasp, numbered(step)));
     let operations = task.operations.iter();
     let operations = operations.map(|done| (done.tick, format!("- {}", done.sentence())));

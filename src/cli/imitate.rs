@@ -11,7 +11,7 @@ use crate::{
     TabletopSimPlugins,
     assembly::{IdAllocator, assemble},
     headless_app_with,
-    imitation::{AppStage, scattered_for},
+    imitation::{AppStage, imitate_seeing, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
     recorder::{
@@ -67,6 +67,9 @@ pub(super) struct ImitateArgs {
     /// Exchange the colours of objects, as the seed decides
     #[arg(long)]
     exchange_colors: bool,
+    /// Let the robot see for itself: it is told shapes and colours, and finds the poses in the pictures of its head camera
+    #[arg(long)]
+    eyes: bool,
     #[command(flatten)]
     robot: RobotChoice,
     /// Record the robot; several trials get a folder each below this one
@@ -120,6 +123,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             robot: &robot,
             hand_pictures: &hand_pictures,
             exchanges_colors: args.exchange_colors,
+            has_eyes: args.eyes,
             seed,
             folder,
         };
@@ -182,6 +186,7 @@ struct Attempt<'a> {
     robot: &'a RobotPlugin,
     hand_pictures: &'a HandPictures,
     exchanges_colors: bool,
+    has_eyes: bool,
     seed: Option<u64>,
     folder: Option<PathBuf>,
 }
@@ -229,7 +234,6 @@ impl Attempt<'_> {
             app.world_mut().write_command(RecordingCommand::Start);
             app.step(1);
         }
-        let mut stage = AppStage::new(&mut app);
         let tell = |doing: Doing| {
             if is_reported {
                 let again = if doing.tries > 0 { " (again)" } else { "" };
@@ -244,14 +248,16 @@ impl Attempt<'_> {
                 ));
             }
         };
-        let imitation = imitate(
-            &mut stage,
-            self.body,
-            self.task,
-            &binding,
-            self.seed.unwrap_or(0),
-            tell,
-        );
+        let seed = self.seed.unwrap_or(0);
+        let imitation = match self.has_eyes {
+            true => imitate_seeing(
+                &mut app, self.body, self.task, &binding, &objects, seed, tell,
+            ),
+            false => {
+                let mut stage = AppStage::new(&mut app);
+                imitate(&mut stage, self.body, self.task, &binding, seed, tell)
+            }
+        };
         let report = recorded::finish(&mut app)?;
         let ticks = app.world().resource::<SimTick>().0;
         Ok(Trial {

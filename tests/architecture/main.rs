@@ -175,6 +175,7 @@ const RULES: [Rule; 38] = [
         "tabletop_episodes",
         &[
             "tabletop_assembly",
+            "tabletop_camera",
             "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
@@ -187,6 +188,7 @@ const RULES: [Rule; 38] = [
             "tabletop_sim",
             "tabletop_storage",
             "tabletop_task",
+            "tabletop_vision",
         ],
     ),
     Rule::new(

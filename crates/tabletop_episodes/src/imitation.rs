@@ -1,5 +1,9 @@
 //! The simulator as a stage on which the robot imitates.
 
+mod seeing;
+
+pub use seeing::{SeeingStage, imitate_seeing};
+
 use bevy::prelude::*;
 use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_controller::{Observer, SeenObject, Sight};
@@ -34,16 +38,19 @@ impl PlanningStage for AppStage<'_> {
     }
 
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
-        let drives = drives(self.app.world().resource::<RobotLayout>(), orders);
-        if !drives.is_empty() {
-            self.app
-                .world_mut()
-                .write_command(RobotCommand::Drive(drives));
-        }
-        self.app.step(1);
+        advance(self.app, orders);
         self.observer.look(self.app.world_mut());
         Ok(())
     }
+}
+
+/// Gives the robot these orders for its limbs, and advances by a tick.
+fn advance(app: &mut App, orders: &[LimbOrder]) {
+    let drives = drives(app.world().resource::<RobotLayout>(), orders);
+    if !drives.is_empty() {
+        app.world_mut().write_command(RobotCommand::Drive(drives));
+    }
+    app.step(1);
 }
 
 /// Number of arrangements that are tried until one allows the task.

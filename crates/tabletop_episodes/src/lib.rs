@@ -8,6 +8,7 @@ pub mod multiplication;
 mod robot_body;
 pub mod shown_task;
 pub mod soak;
+pub mod watching;
 
 pub use beginning::scene_at_beginning;
 pub use collection::{Collection, CollectionError};

@@ -119,12 +119,12 @@ impl Imitator<'_> {
         stage: &mut dyn PlanningStage,
         tell: &mut dyn FnMut(Doing),
     ) -> Result<(), Stopped> {
+        self.park_all(stage)?;
+        self.look(stage)?;
         if let Some(unreached) = self.unreached(stage.sight()) {
             self.outcome.failure = Some(unreached);
             return Ok(());
         }
-        self.park_all(stage)?;
-        self.look(stage)?;
         self.before = Before::anything(stage.sight());
         for i in 0..self.task.steps.len() {
             let step = &self.task.steps[i];

@@ -50,6 +50,7 @@ pub use files::{
 pub use reading::{
     event::{Occurrence, RecordedEvent},
     original::{LineRemark, OriginalRecording, read_original},
+    picture::read_picture,
     recording_reader::RecordingReader,
     rows::{JointRow, StateRow},
     segment::{RecordedFrame, RecordedSegment},

@@ -2,12 +2,17 @@
 
 use std::path::Path;
 
-use tabletop_core::SimTick;
+use tabletop_core::{JointSpec, ObjectSpec, SimTick, Table};
 use tabletop_recorder::{
     RecordedSegment, RecorderError, RecordingReader, TICKS_PER_FRAME, read_original,
 };
 
-use crate::{demonstration::Demonstration, furniture::Furniture, inference::inferred_acts};
+use crate::{
+    demonstration::{Demonstration, ShownObject},
+    furniture::Furniture,
+    inference::inferred_acts,
+    track::Track,
+};
 
 impl Demonstration {
     /// Reads a recording, be it one of the original program. The furniture completes its events.
@@ -40,6 +45,33 @@ impl Demonstration {
         if shown.acts.is_empty() {
             shown.acts = inferred_acts(&shown);
         }
+        shown
+    }
+
+    /// The demonstration of the motions of objects, whose descriptions have their first poses: all that was seen, from tick 0 to the last one. The
+    /// acts of the hands are inferred from the motions.
+    pub fn of_motions(
+        table: Table,
+        objects: impl IntoIterator<Item = (ObjectSpec, Track)>,
+        joints: Vec<JointSpec>,
+        end: SimTick,
+    ) -> Self {
+        let objects = objects.into_iter().map(|(spec, track)| ShownObject {
+            spec,
+            track,
+            created: SimTick(0),
+            deleted: None,
+            is_guessed: false,
+        });
+        let mut shown = Self {
+            table,
+            objects: objects.collect(),
+            joints,
+            end,
+            is_poses_only: true,
+            ..Self::default()
+        };
+        shown.acts = inferred_acts(&shown);
         shown
     }
 }

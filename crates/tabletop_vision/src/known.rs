@@ -100,6 +100,15 @@ impl KnownObject {
         self.stances[0].symmetry
     }
 
+    /// The pose that looks the same as this one, and is turned about the vertical as little as possible from a rotation.
+    pub fn turned_least(&self, pose: Pose, from: Quat) -> Pose {
+        let turn = from * pose.rotation.inverse();
+        let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
+        let symmetry = self.stance(&self.placement(pose)).symmetry;
+        let turn = turn_about(Vec3::Z, yaw - symmetry.reduced(yaw));
+        Pose::new(pose.location, (turn * pose.rotation).normalize())
+    }
+
     pub(crate) const fn is_fixed(&self) -> bool {
         self.is_fixed
     }

@@ -1,0 +1,287 @@
+//! The stage of a robot that is told no pose of an object: it sees them through its head camera.
+
+use std::{
+    collections::BTreeMap,
+    f32::consts::{FRAC_PI_2, PI},
+};
+
+use bevy::{math::Quat, prelude::*};
+use tabletop_camera::{
+    Camera, DrawnFigure, DrawnSolid, FiguresSeen, Rasterizer, Scene, VisibleWorld,
+};
+use tabletop_controller::{Observer, SeenObject, Sight};
+use tabletop_core::{HeadCamera, ObjectSpec, Picture};
+use tabletop_geometry::{Pose, turn_about};
+use tabletop_planner::{
+    Before, Doing, Imitation, LimbOrder, PlanningStage, RobotBody, Stopped, imitate, undone,
+};
+use tabletop_task::{Binding, Task};
+use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, Visibility};
+
+use super::advance;
+
+/// An app whose robot is moved by commands and sees with its head camera. It knows the shapes and colours of the objects, the joints between
+/// them, and the angles of its own joints, and feels what its grippers hold.
+pub struct SeeingStage<'a> {
+    app: &'a mut App,
+    body: &'a RobotBody,
+    observer: Observer,
+    known: Vec<(String, KnownObject)>,
+    /// The world as the robot believes it to be.
+    belief: Sight,
+    /// The object in each gripper, and its pose in the frame of the end effector.
+    held: Vec<Option<(String, Pose)>>,
+    /// The robot's name of each object, by id. Which of several objects that look the same is which, no picture tells.
+    names: BTreeMap<String, String>,
+}
+
+/// Does a task with the objects that the robot sees. It counts as done only if it is done in the world as it is.
+pub fn imitate_seeing(
+    app: &mut App,
+    body: &RobotBody,
+    task: &Task,
+    binding: &Binding,
+    objects: &[ObjectSpec],
+    seed: u64,
+    tell: impl FnMut(Doing),
+) -> Imitation {
+    let mut stage = SeeingStage::new(app, body, objects, |object| stances(task, binding, object));
+    let before = Before::anything(&stage.truth());
+    let mut imitation = imitate(&mut stage, body, task, binding, seed, tell);
+    if imitation.failure.is_none() {
+        imitation.failure = undone(task, binding, &stage.truth(), &before);
+    }
+    imitation
+}
+
+/// The ways in which an object may stand: as in the scene, and on each of its sides if the task tips it.
+fn stances(task: &Task, binding: &Binding, object: &ObjectSpec) -> Vec<Quat> {
+    let tips = task.steps.iter().any(|step| {
+        step.tipping.is_some() && binding.object(&step.object) == Some(object.id.as_str())
+    });
+    let own = object.pose.rotation;
+    if !tips {
+        return vec![own];
+    }
+    let about_x = [0.0, FRAC_PI_2, -FRAC_PI_2, PI].map(|angle| (Vec3::X, angle));
+    let about_y = [FRAC_PI_2, -FRAC_PI_2].map(|angle| (Vec3::Y, angle));
+    let turns = about_x.into_iter().chain(about_y);
+    turns
+        .map(|(axis, angle)| turn_about(axis, angle) * own)
+        .collect()
+}
+
+/// What the head camera shows: the picture, with the robot's own links as they are in it.
+struct Look {
+    camera: Camera,
+    picture: Picture,
+    links: Vec<DrawnFigure>,
+}
+
+impl<'a> SeeingStage<'a> {
+    /// The app, whose robot has looked at these objects. Each of them stands in one of the ways, rotations of the object, that `stances` tells for it, turned
+    /// about the vertical by any angle.
+    pub fn new(
+        app: &'a mut App,
+        body: &'a RobotBody,
+        objects: &[ObjectSpec],
+        stances: impl Fn(&ObjectSpec) -> Vec<Quat>,
+    ) -> Self {
+        let mut observer = Observer::default();
+        let truth = observer.look(app.world_mut());
+        let belief = Sight {
+            objects: BTreeMap::new(),
+            ..truth.clone()
+        };
+        let known = objects.iter().map(|spec| {
+            let object = KnownObject::of(&spec.shape).standing(stances(spec));
+            let object = match spec.is_fixed() {
+                true => object.fixed(),
+                false => object,
+            };
+            (spec.id.clone(), object)
+        });
+        let mut stage = Self {
+            known: known.collect(),
+            held: vec![None; belief.limbs.len()],
+            app,
+            body,
+            observer,
+            belief,
+            names: BTreeMap::new(),
+        };
+        stage.look();
+        stage.names = stage.name_look_alikes();
+        stage
+    }
+
+    /// The world as it is, with the robot's names for objects that look the same.
+    pub fn truth(&self) -> Sight {
+        let mut truth = self.observer.sight().clone();
+        let objects = std::mem::take(&mut truth.objects);
+        let named = |id: String| self.names.get(&id).cloned().unwrap_or(id);
+        let objects = objects.into_iter();
+        truth.objects = objects.map(|(id, object)| (named(id), object)).collect();
+        truth
+    }
+
+    /// The distance, in units, of each object from where the robot believes it to be, by the robot's name; infinite if it has not seen it.
+    pub fn errors(&self) -> BTreeMap<String, f32> {
+        let truth = self.truth().objects.into_iter();
+        let errors = truth.map(|(id, object)| {
+            let believed = self.belief.objects.get(&id);
+            let error = believed.map_or(f32::INFINITY, |believed| {
+                believed.pose.location.distance(object.pose.location)
+            });
+            (id, error)
+        });
+        errors.collect()
+    }
+
+    /// Names objects that look the same as the nearest ones that the robot has seen.
+    fn name_look_alikes(&self) -> BTreeMap<String, String> {
+        let truth = &self.observer.sight().objects;
+        let mut names = BTreeMap::new();
+        let mut free: Vec<_> = self.known.iter().collect();
+        for (id, known) in &self.known {
+            let Some(object) = truth.get(id) else {
+                continue;
+            };
+            let distance = |name: &str| {
+                let believed = self.belief.objects.get(name);
+                believed.map_or(f32::INFINITY, |it| {
+                    it.pose.location.distance(object.pose.location)
+                })
+            };
+            let alike = free.iter().enumerate().filter(|(_, it)| it.1 == *known);
+            let nearest = alike.min_by(|(_, a), (_, b)| distance(&a.0).total_cmp(&distance(&b.0)));
+            if let Some((place, _)) = nearest {
+                names.insert(id.clone(), free.remove(place).0.clone());
+            }
+        }
+        names
+    }
+
+    fn look_through_head_camera(&mut self) -> Option<Look> {
+        let look =
+            self.app
+                .world_mut()
+                .run_system_cached(|head: Res<HeadCamera>, world: VisibleWorld| {
+                    let mut scene = Scene::default();
+                    world.draw(FiguresSeen::FromHead, &mut scene, &mut Vec::new());
+                    let camera = Camera::of_head(&head, &world.table());
+                    let mut picture = Picture::default();
+                    Rasterizer::default().draw(&scene, &camera, &mut picture);
+                    // Colours are all that it sees.
+                    picture.depth.fill(0.0);
+                    picture.objects.fill(0);
+                    Look {
+                        camera,
+                        picture,
+                        links: scene.figures,
+                    }
+                });
+        look.ok()
+    }
+
+    /// Takes what it feels in its grippers, and moves what they hold with them.
+    fn feel(&mut self) {
+        let limbs = &self.observer.sight().limbs;
+        self.belief.limbs.clone_from(limbs);
+        for (number, limb) in limbs.iter().enumerate() {
+            let end_effector = self.body.end_effector(number, &limb.angles);
+            let name = |id: &String| self.names.get(id).unwrap_or(id).clone();
+            let names: Vec<_> = limb.holds.iter().map(name).collect();
+            self.belief.limbs[number].holds.clone_from(&names);
+            let Some(name) = names.into_iter().next() else {
+                self.held[number] = None;
+                continue;
+            };
+            let Some(object) = self.belief.objects.get_mut(&name) else {
+                continue;
+            };
+            match &self.held[number] {
+                Some((held, pose)) if *held == name => object.pose = end_effector * *pose,
+                Some(_) | None => {
+                    self.held[number] = Some((name, end_effector.inverse() * object.pose));
+                }
+            }
+        }
+    }
+
+    fn is_held(&self, name: &str) -> bool {
+        let mut held = self.held.iter().flatten();
+        held.any(|(held, _)| held == name)
+    }
+
+    /// Believes what was seen of an object.
+    fn believe(&mut self, name: &str, known: &KnownObject, pose: Pose) {
+        let pose = match self.belief.objects.get(name) {
+            Some(before) => known.turned_least(pose, before.pose.rotation),
+            None => pose,
+        };
+        let truth = self.observer.sight().objects.get(name);
+        if let Some(object) = truth {
+            let seen = SeenObject {
+                pose,
+                ..object.clone()
+            };
+            self.belief.objects.insert(name.to_owned(), seen);
+        }
+    }
+}
+
+impl PlanningStage for SeeingStage<'_> {
+    fn sight(&self) -> &Sight {
+        &self.belief
+    }
+
+    fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
+        advance(self.app, orders);
+        self.observer.look(self.app.world_mut());
+        self.feel();
+        Ok(())
+    }
+
+    fn look(&mut self) -> Vec<String> {
+        let Some(look) = self.look_through_head_camera() else {
+            return Vec::new();
+        };
+        let (held, free): (Vec<_>, Vec<_>) = self
+            .known
+            .iter()
+            .cloned()
+            .partition(|(name, _)| self.is_held(name));
+        let solids = held.iter().flat_map(|(name, _)| {
+            let object = self.belief.objects.get(name);
+            let solids = object.map_or(Vec::new(), |it| it.shape.drawn());
+            let pose = object.map_or(Pose::IDENTITY, |it| it.pose);
+            let solids = solids.into_iter();
+            solids.map(move |solid| DrawnSolid::of(pose, &solid, 1))
+        });
+        let scenery = KnownScenery {
+            figures: look.links,
+            solids: solids.collect(),
+        };
+        let objects = free.iter().map(|(_, known)| known.clone());
+        let mut eyes = Eyes::new(objects.collect(), look.camera, self.belief.table);
+        eyes.remember(free.iter().map(|(name, _)| {
+            let believed = self.belief.objects.get(name);
+            believed.map(|it| it.pose)
+        }));
+        let percept = eyes.look(&look.picture, &scenery);
+        let mut unseen = Vec::new();
+        for ((name, known), seen) in free.iter().zip(percept.objects) {
+            match seen {
+                ObjectPercept {
+                    pose: Some(pose),
+                    is_sure: true,
+                    visibility: Visibility::Seen | Visibility::PartlyHidden,
+                    ..
+                } => self.believe(name, known, pose),
+                ObjectPercept { .. } => unseen.push(name.clone()),
+            }
+        }
+        unseen
+    }
+}

@@ -1,0 +1,108 @@
+//! Watching: a demonstration, from the pictures of the head camera alone.
+
+use tabletop_camera::Camera;
+use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Picture, SimTick, Table};
+use tabletop_geometry::Pose;
+use tabletop_task::{Demonstration, Track, angle_between};
+use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept};
+
+/// The largest displacement, in units, and the largest turn, in rad, of an object between two pictures that is an error of the eyes and no motion.
+const STILL: (f32, f32) = (0.02, 0.03);
+
+/// A watcher of a demonstration: knows the shapes and colours of the objects, and not where they are.
+pub struct Watcher {
+    table: Table,
+    objects: Vec<Watched>,
+    joints: Vec<JointSpec>,
+    eyes: Eyes,
+    last: SimTick,
+}
+
+/// An object that is watched.
+struct Watched {
+    spec: ObjectSpec,
+    known: KnownObject,
+    track: Track,
+    pose: Option<Pose>,
+}
+
+impl Watcher {
+    /// A watcher of these objects, each of which stands as it does in its description, turned about the vertical by any angle.
+    pub fn new(
+        objects: Vec<ObjectSpec>,
+        joints: Vec<JointSpec>,
+        table: Table,
+        camera: &HeadCamera,
+    ) -> Self {
+        let watched = objects.into_iter().map(|spec| {
+            let known = KnownObject::of(&spec.shape).standing([spec.pose.rotation]);
+            let known = match spec.is_fixed() {
+                true => known.fixed(),
+                false => known,
+            };
+            Watched {
+                spec,
+                known,
+                track: Track::default(),
+                pose: None,
+            }
+        });
+        let objects: Vec<_> = watched.collect();
+        let known = objects.iter().map(|object| object.known.clone());
+        Self {
+            eyes: Eyes::new(known.collect(), Camera::of_head(camera, &table), table),
+            table,
+            objects,
+            joints,
+            last: SimTick(0),
+        }
+    }
+
+    /// Watches the next picture, of this tick of the demonstration. Ticks must ascend.
+    pub fn watch(&mut self, tick: SimTick, picture: &Picture) {
+        self.last = tick;
+        let percept = self.eyes.look(picture, &KnownScenery::default());
+        for (object, seen) in self.objects.iter_mut().zip(percept.objects) {
+            if let ObjectPercept {
+                pose: Some(pose),
+                is_sure: true,
+                ..
+            } = seen
+            {
+                object.see(tick, pose);
+            }
+        }
+    }
+
+    /// The poses of the objects after the last picture, by id; of those that were seen.
+    pub fn poses(&self) -> impl Iterator<Item = (&str, Pose)> {
+        let objects = self.objects.iter();
+        objects.filter_map(|object| Some((object.spec.id.as_str(), object.pose?)))
+    }
+
+    /// The demonstration that was watched. Objects that were never seen are not part of it.
+    pub fn demonstration(self) -> Demonstration {
+        let objects = self.objects.into_iter().filter_map(|mut object| {
+            object.spec.pose = object.track.at(SimTick(0))?;
+            Some((object.spec, object.track))
+        });
+        Demonstration::of_motions(self.table, objects, self.joints, self.last)
+    }
+}
+
+impl Watched {
+    fn see(&mut self, tick: SimTick, pose: Pose) {
+        let pose = match self.pose {
+            Some(before) => self.known.turned_least(pose, before.rotation),
+            None => pose,
+        };
+        let is_still = |before: Pose| {
+            before.location.distance(pose.location) < STILL.0
+                && angle_between(before.rotation, pose.rotation) < STILL.1
+        };
+        if !self.pose.is_some_and(is_still) {
+            self.track.push(tick, pose);
+            self.pose = Some(pose);
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! `tabletop watch`: the task that pictures show.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use crate::{
+    recorder::{RecorderError, RecordingReader, read_picture},
+    shipped::read_faultless_task,
+    storage::Storage,
+    task::{Demonstration, Requirements, Task},
+    watching::Watcher,
+};
+use clap::Args;
+use serde_json::json;
+use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, SimTick, TICKS_PER_SECOND, Table};
+use tabletop_geometry::Pose;
+
+use super::{
+    Failure,
+    allowed_paths::AllowedPaths,
+    cut_off::say_if_cut_off,
+    explain::{furniture, print, reported},
+    range::NumberRange,
+    terminal::show_warnings,
+};
+
+const RATE: NumberRange<u64> = NumberRange::whole(1, TICKS_PER_SECOND as u64);
+
+#[derive(Args)]
+pub(super) struct WatchArgs {
+    /// A recording's folder, or one with PNG pictures of the head camera, in the order of their names
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// The task file that says which objects there are [default: those of the recording]; not read: where they are
+    #[arg(long, value_name = "FILE")]
+    setup: Option<PathBuf>,
+    #[command(flatten)]
+    allowed: AllowedPaths,
+    /// Pictures per second, from 1 to 60, of a folder that is no recording
+    #[arg(long, value_name = "N", value_parser = RATE, default_value_t = 4, allow_negative_numbers = true)]
+    rate: u64,
+    /// Print everything that was understood as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Pictures, and what is known of what they show.
+pub(super) struct Footage {
+    table: Table,
+    camera: HeadCamera,
+    objects: Vec<ObjectSpec>,
+    joints: Vec<JointSpec>,
+    /// The pictures, each with its tick, from 0.
+    frames: Vec<(SimTick, PathBuf)>,
+    /// The true poses of the objects, by id, of each picture; empty if nobody knows them.
+    truth: Vec<BTreeMap<String, Pose>>,
+}
+
+/// What a watcher has seen.
+pub(super) struct WatchedFootage {
+    pub demonstration: Demonstration,
+    /// The greatest distance, in units, of an object from where it was seen, picture by picture.
+    errors: Vec<f32>,
+}
+
+/// Prints the task that pictures show.
+pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
+    show_warnings();
+    let setup = match &args.setup {
+        Some(setup) => {
+            let scene =
+                read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?;
+            let furniture = furniture(&scene);
+            Some((scene.table, furniture.objects, furniture.joints))
+        }
+        None => None,
+    };
+    let pictures = pictures_in(&args.folder)?;
+    let footage = match pictures.is_empty() {
+        true => Footage::of_recording(&args.folder, setup)?,
+        false => Footage::of_pictures(&args.folder, pictures, setup, args.rate)?,
+    };
+    let watched = footage.watch()?;
+    let mut task = Task::of(&watched.demonstration);
+    task.phrase(&Requirements::default());
+    if args.json {
+        let json = json!({ "task": task, "errors": watched.errors });
+        return print(&format!("{json:#}\n"));
+    }
+    let mut lines = reported(&task);
+    if lines.is_empty() {
+        lines.push("Nothing is moved for good.".into());
+    }
+    if let Some(summary) = watched.summary() {
+        lines.push(summary);
+    }
+    print(&(lines.join("\n") + "\n"))
+}
+
+type Setup = (Table, Vec<ObjectSpec>, Vec<JointSpec>);
+
+impl Footage {
+    /// The pictures of a recording, and the objects that it begins with, or those of a task file.
+    pub(super) fn of_recording(folder: &Path, setup: Option<Setup>) -> Result<Self, Failure> {
+        let recording = RecordingReader::open(folder).map_err(Failure::input)?;
+        say_if_cut_off(&recording, "watched");
+        let session = recording.session();
+        let camera = session.header.camera.ok_or_else(|| {
+            Failure::input(format!(
+                "{}: the recording has no head camera, so it has no pictures to watch",
+                folder.display()
+            ))
+        })?;
+        let own = || {
+            let objects = session.scene.objects.iter().map(|object| ObjectSpec {
+                pose: object.pose,
+                ..object.spec.clone()
+            });
+            let joints = session.scene.joints.clone();
+            (
+                session.scene.table.unwrap_or_default(),
+                objects.collect(),
+                joints,
+            )
+        };
+        let (table, objects, joints) = setup.unwrap_or_else(own);
+        let mut frames = Vec::new();
+        for segment in recording.segments().map_err(Failure::input)? {
+            for frame in segment.frames {
+                frames.push((frame.tick, frame.picture));
+            }
+        }
+        let truth = truth(&recording, &frames).map_err(Failure::input)?;
+        let first = recording.first_tick().0;
+        let frames = frames.into_iter();
+        let frames = frames.map(|(tick, path)| (SimTick(tick.0 - first), path));
+        Ok(Self {
+            table,
+            camera,
+            objects,
+            joints,
+            frames: frames.collect(),
+            truth,
+        })
+    }
+
+    /// The pictures of a folder, which are all that there is.
+    fn of_pictures(
+        folder: &Path,
+        pictures: Vec<PathBuf>,
+        setup: Option<Setup>,
+        rate: u64,
+    ) -> Result<Self, Failure> {
+        let Some((table, objects, joints)) = setup else {
+            return Err(Failure::input(format!(
+                "{} holds pictures, and no recording: name the objects in them with --setup FILE",
+                folder.display()
+            )));
+        };
+        let step = u64::from(TICKS_PER_SECOND) / rate;
+        let pictures = pictures.into_iter().zip(0..);
+        let frames = pictures.map(|(path, number)| (SimTick(number * step), path));
+        Ok(Self {
+            table,
+            camera: HeadCamera::default(),
+            objects,
+            joints,
+            frames: frames.collect(),
+            truth: Vec::new(),
+        })
+    }
+
+    /// Watches all pictures.
+    ///
+    /// # Errors
+    /// One cannot be read.
+    pub(super) fn watch(self) -> Result<WatchedFootage, Failure> {
+        let mut watcher = Watcher::new(self.objects, self.joints, self.table, &self.camera);
+        let mut errors = Vec::new();
+        for (number, (tick, path)) in self.frames.iter().enumerate() {
+            let picture = read_picture(path).map_err(Failure::input)?;
+            watcher.watch(*tick, &picture);
+            if let Some(truth) = self.truth.get(number) {
+                let distances = watcher.poses().filter_map(|(id, pose)| {
+                    let true_pose = truth.get(id)?;
+                    Some(true_pose.location.distance(pose.location))
+                });
+                errors.push(distances.fold(0.0, f32::max));
+            }
+        }
+        Ok(WatchedFootage {
+            demonstration: watcher.demonstration(),
+            errors,
+        })
+    }
+}
+
+impl WatchedFootage {
+    /// How far the objects were from where they were seen.
+    fn summary(&self) -> Option<String> {
+        let mut errors = self.errors.clone();
+        errors.sort_by(f32::total_cmp);
+        let last = errors.len().checked_sub(1)?;
+        let share = |percent: usize| errors[last * percent / 100];
+        Some(format!(
+            "{} pictures; greatest error of a pose: median {:.4}, 90 % {:.4}, 99 % {:.3}, at most {:.3} units",
+            errors.len(),
+            share(50),
+            share(90),
+            share(99),
+            errors[last],
+        ))
+    }
+}
+
+/// The PNG files directly in a folder, in the order of their names. A recording has its pictures in folders of its segments.
+fn pictures_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = Storage::default().entries(folder);
+    let entries = entries
+        .map_err(|error| Failure::input(format!("cannot read {}: {error}", folder.display())))?;
+    let is_png = |path: &PathBuf| path.extension().is_some_and(|kind| kind == "png");
+    let mut pictures: Vec<_> = entries.into_iter().filter(is_png).collect();
+    pictures.sort();
+    Ok(pictures)
+}
+
+/// The true poses of the objects at each frame.
+fn truth(
+    recording: &RecordingReader,
+    frames: &[(SimTick, PathBuf)],
+) -> Result<Vec<BTreeMap<String, Pose>>, RecorderError> {
+    let objects = recording.session().scene.objects.iter();
+    let mut poses: BTreeMap<_, _> = objects
+        .map(|object| (object.spec.id.clone(), object.pose))
+        .collect();
+    let mut rows = recording.states()?.into_iter().peekable();
+    let at_frame = frames.iter().map(|(tick, _)| {
+        while let Some(row) = rows.next_if(|row| row.tick <= *tick) {
+            poses.insert(row.id, row.pose);
+        }
+        poses.clone()
+    });
+    Ok(at_frame.collect())
+}
