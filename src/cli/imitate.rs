@@ -40,6 +40,7 @@ use super::{
     robot_options::RobotChoice,
     shard::ShardOption,
     terminal::{say, show_warnings},
+    watch::read_watched,
 };
 
 const TRIALS: NumberRange<u64> = NumberRange::whole(1, 100_000);
@@ -70,6 +71,9 @@ pub(super) struct ImitateArgs {
     /// Let the robot see for itself: it is told shapes and colours, and finds the poses in the pictures of its head camera
     #[arg(long)]
     eyes: bool,
+    /// Learn the task from the recording's pictures alone, too
+    #[arg(long, requires = "eyes")]
+    watch: bool,
     #[command(flatten)]
     robot: RobotChoice,
     /// Record the robot; several trials get a folder each below this one
@@ -96,7 +100,10 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         Some(setup) => read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?,
         None => scene_of(&args.recording)?,
     };
-    let (task, requirements) = read(&args.recording, &furniture(&scene))?;
+    let (task, requirements) = match args.watch {
+        true => read_watched(&args.recording)?,
+        false => read(&args.recording, &furniture(&scene))?,
+    };
     if task.steps.is_empty() {
         let reason = "the recording moves nothing for good, so there is nothing to imitate";
         return Err(Failure::input(reason));

@@ -48,7 +48,7 @@ pub(super) struct WatchArgs {
 }
 
 /// Pictures, and what is known of what they show.
-pub(super) struct Footage {
+struct Footage {
     table: Table,
     camera: HeadCamera,
     objects: Vec<ObjectSpec>,
@@ -60,8 +60,8 @@ pub(super) struct Footage {
 }
 
 /// What a watcher has seen.
-pub(super) struct WatchedFootage {
-    pub demonstration: Demonstration,
+struct WatchedFootage {
+    demonstration: Demonstration,
     /// The greatest distance, in units, of an object from where it was seen, picture by picture.
     errors: Vec<f32>,
 }
@@ -100,11 +100,20 @@ pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
     print(&(lines.join("\n") + "\n"))
 }
 
+/// The task that the pictures of a recording show, with its requirements in its sentences.
+pub(super) fn read_watched(recording: &Path) -> Result<(Task, Requirements), Failure> {
+    let watched = Footage::of_recording(recording, None)?.watch()?;
+    let mut task = Task::of(&watched.demonstration);
+    let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
+    task.phrase(&requirements);
+    Ok((task, requirements))
+}
+
 type Setup = (Table, Vec<ObjectSpec>, Vec<JointSpec>);
 
 impl Footage {
     /// The pictures of a recording, and the objects that it begins with, or those of a task file.
-    pub(super) fn of_recording(folder: &Path, setup: Option<Setup>) -> Result<Self, Failure> {
+    fn of_recording(folder: &Path, setup: Option<Setup>) -> Result<Self, Failure> {
         let recording = RecordingReader::open(folder).map_err(Failure::input)?;
         say_if_cut_off(&recording, "watched");
         let session = recording.session();
@@ -177,7 +186,7 @@ impl Footage {
     ///
     /// # Errors
     /// One cannot be read.
-    pub(super) fn watch(self) -> Result<WatchedFootage, Failure> {
+    fn watch(self) -> Result<WatchedFootage, Failure> {
         let mut watcher = Watcher::new(self.objects, self.joints, self.table, &self.camera);
         let mut errors = Vec::new();
         for (number, (tick, path)) in self.frames.iter().enumerate() {

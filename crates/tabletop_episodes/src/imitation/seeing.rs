@@ -10,7 +10,10 @@ use tabletop_camera::{
     Camera, DrawnFigure, DrawnSolid, FiguresSeen, Rasterizer, Scene, VisibleWorld,
 };
 use tabletop_controller::{Observer, SeenObject, Sight};
-use tabletop_core::{HeadCamera, ObjectSpec, Picture};
+use tabletop_core::{
+    Drive, HeadCamera, ObjectSpec, Picture, Robot, RobotCommand, RobotLayout, StepApp as _,
+    TICK_SECONDS, WriteCommand as _,
+};
 use tabletop_geometry::{Pose, turn_about};
 use tabletop_planner::{
     Before, Doing, Imitation, LimbOrder, PlanningStage, RobotBody, Stopped, imitate, undone,
@@ -19,6 +22,13 @@ use tabletop_task::{Binding, Task};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, Visibility};
 
 use super::advance;
+
+/// Angle, in rad, by which the head turns for what is beside the picture.
+const PAN: f64 = 0.5;
+
+/// The most ticks for a turn of the head, and the angle, in rad, by which it may miss.
+const NECK_TICKS: u32 = 240;
+const NECK_EXACT: f64 = 1e-3;
 
 /// An app whose robot is moved by commands and sees with its head camera. It knows the shapes and colours of the objects, the joints between
 /// them, and the angles of its own joints, and feels what its grippers hold.
@@ -110,7 +120,7 @@ impl<'a> SeeingStage<'a> {
             belief,
             names: BTreeMap::new(),
         };
-        stage.look();
+        stage.glance(None);
         stage.names = stage.name_look_alikes();
         stage
     }
@@ -184,6 +194,90 @@ impl<'a> SeeingStage<'a> {
         look.ok()
     }
 
+    /// Looks at the picture that the head camera shows now. Believes what it sees of these objects, or of all, and returns the names of those that it does not
+    /// see well enough.
+    fn glance(&mut self, sought: Option<&[String]>) -> Vec<String> {
+        let Some(look) = self.look_through_head_camera() else {
+            return Vec::new();
+        };
+        let (held, free): (Vec<_>, Vec<_>) = self
+            .known
+            .iter()
+            .cloned()
+            .partition(|(name, _)| self.is_held(name));
+        let solids = held.iter().flat_map(|(name, _)| {
+            let object = self.belief.objects.get(name);
+            let solids = object.map_or(Vec::new(), |it| it.shape.drawn());
+            let pose = object.map_or(Pose::IDENTITY, |it| it.pose);
+            let solids = solids.into_iter();
+            solids.map(move |solid| DrawnSolid::of(pose, &solid, 1))
+        });
+        let scenery = KnownScenery {
+            figures: look.links,
+            solids: solids.collect(),
+        };
+        let objects = free.iter().map(|(_, known)| known.clone());
+        let mut eyes = Eyes::new(objects.collect(), look.camera, self.belief.table);
+        eyes.remember(free.iter().map(|(name, _)| {
+            let believed = self.belief.objects.get(name);
+            believed.map(|it| it.pose)
+        }));
+        let percept = eyes.look(&look.picture, &scenery);
+        let mut unseen = Vec::new();
+        for ((name, known), seen) in free.iter().zip(percept.objects) {
+            if sought.is_some_and(|sought| !sought.contains(name)) {
+                continue;
+            }
+            match seen {
+                ObjectPercept {
+                    pose: Some(pose),
+                    is_sure: true,
+                    visibility: Visibility::Seen | Visibility::PartlyHidden,
+                    ..
+                } => self.believe(name, known, pose),
+                ObjectPercept { .. } => unseen.push(name.clone()),
+            }
+        }
+        unseen
+    }
+
+    /// True if an object was never seen, or its place is not in the picture of the head that looks straight ahead.
+    fn is_beside_picture(&self, name: &str) -> bool {
+        let head = HeadCamera {
+            pan: 0.0,
+            ..*self.app.world().resource::<HeadCamera>()
+        };
+        let camera = Camera::of_head(&head, &self.belief.table);
+        let Some(object) = self.belief.objects.get(name) else {
+            return true;
+        };
+        let size = Vec2::new(camera.width as f32, camera.height as f32);
+        let pixel = camera.pixel_of(object.pose.location);
+        pixel.is_none_or(|pixel| !Rect::from_corners(Vec2::ZERO, size).contains(pixel))
+    }
+
+    /// Turns the neck to an angle, in rad. False if it has none, or does not get there.
+    fn turn_head(&mut self, pan: f64) -> bool {
+        let layout = self.app.world().resource::<RobotLayout>();
+        let Some(neck) = layout.neck else {
+            return false;
+        };
+        let name = layout.joint(neck).name;
+        for _ in 0..NECK_TICKS {
+            let left = pan - self.app.world().resource::<Robot>().joint(neck).position;
+            if left.abs() < NECK_EXACT {
+                return true;
+            }
+            let drive = Drive::Velocity(left / f64::from(TICK_SECONDS));
+            let world = self.app.world_mut();
+            world.write_command(RobotCommand::Drive(vec![(name, drive)]));
+            self.app.step(1);
+            self.observer.look(self.app.world_mut());
+            self.feel();
+        }
+        false
+    }
+
     /// Takes what it feels in its grippers, and moves what they hold with them.
     fn feel(&mut self) {
         let limbs = &self.observer.sight().limbs;
@@ -243,45 +337,15 @@ impl PlanningStage for SeeingStage<'_> {
         Ok(())
     }
 
+    /// Looks, and turns its head for what may be beside the picture.
     fn look(&mut self) -> Vec<String> {
-        let Some(look) = self.look_through_head_camera() else {
-            return Vec::new();
-        };
-        let (held, free): (Vec<_>, Vec<_>) = self
-            .known
-            .iter()
-            .cloned()
-            .partition(|(name, _)| self.is_held(name));
-        let solids = held.iter().flat_map(|(name, _)| {
-            let object = self.belief.objects.get(name);
-            let solids = object.map_or(Vec::new(), |it| it.shape.drawn());
-            let pose = object.map_or(Pose::IDENTITY, |it| it.pose);
-            let solids = solids.into_iter();
-            solids.map(move |solid| DrawnSolid::of(pose, &solid, 1))
-        });
-        let scenery = KnownScenery {
-            figures: look.links,
-            solids: solids.collect(),
-        };
-        let objects = free.iter().map(|(_, known)| known.clone());
-        let mut eyes = Eyes::new(objects.collect(), look.camera, self.belief.table);
-        eyes.remember(free.iter().map(|(name, _)| {
-            let believed = self.belief.objects.get(name);
-            believed.map(|it| it.pose)
-        }));
-        let percept = eyes.look(&look.picture, &scenery);
-        let mut unseen = Vec::new();
-        for ((name, known), seen) in free.iter().zip(percept.objects) {
-            match seen {
-                ObjectPercept {
-                    pose: Some(pose),
-                    is_sure: true,
-                    visibility: Visibility::Seen | Visibility::PartlyHidden,
-                    ..
-                } => self.believe(name, known, pose),
-                ObjectPercept { .. } => unseen.push(name.clone()),
+        let mut unseen = self.glance(None);
+        for pan in [PAN, -PAN] {
+            if unseen.iter().any(|name| self.is_beside_picture(name)) && self.turn_head(pan) {
+                unseen = self.glance(Some(&unseen));
             }
         }
+        self.turn_head(0.0);
         unseen
     }
 }
