@@ -92,6 +92,11 @@ fn main() {
                 let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
                 let start = Instant::now();
                 let seen = eyes.look(&sample.picture, &KnownScenery::default());
+                if is_verbose {
+                    for pose in &sample.poses {
+                        eprintln!("    truth {} {}", pose.location, pose.degrees().z);
+                    }
+                }
                 times.push(start.elapsed().as_secs_f64() * 1e3);
                 for error in sample.errors(&seen) {
                     if is_verbose && (error.length > 0.02 || error.degrees > 1.0) {

@@ -17,7 +17,7 @@ const LEAST_SCORE: f32 = 0.12;
 /// Squared difference of a pixel above which it is not explained, without noise.
 const UNEXPLAINED: f32 = 600.0;
 /// The loss that a support may add, as a part of what the object explains: else it is in the air.
-const SUPPORTED: f32 = 0.004;
+const SUPPORTED: f32 = 0.05;
 /// The loss of a pixel, on average, above which an object is explained badly, without noise.
 const BAD: f32 = 150.0;
 /// The largest height, in units, on which objects that nothing is known about are looked for.
@@ -193,6 +193,19 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             let Some((object, placement, _)) = best.filter(|best| best.2 > LEAST_SCORE) else {
                 return;
             };
+            if std::env::var("DBG").is_ok() {
+                for (i, c) in candidates.iter().enumerate() {
+                    eprintln!(
+                        "  cand {i} {:?}",
+                        c.as_ref().map(|c| c.as_ref().map(|c| (
+                            c.placement.location,
+                            c.placement.yaw,
+                            c.score
+                        )))
+                    );
+                }
+                eprintln!("place {object} {placement:?}");
+            }
             self.place(object, Some(placement));
             let window = self.windows[object].clone().unwrap_or_default();
             let wide = window.widened(4, self.residual.size());
@@ -228,16 +241,12 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             self.objects[i].draw(&placement, i as u32 + 1, &mut solids);
             Some((window, solids))
         });
-        let height = |i: usize| {
-            let stances = self.objects[i].stances().iter();
-            stances.map(|it| it.high - it.low).fold(0.0, f32::max)
-        };
         let known = &self.objects[object];
         let mut guess = Guess {
             others: placed.collect(),
-            highest: match known.is_fixed() {
-                true => 0.0,
-                false => others.map(height).sum::<f32>().min(HIGHEST),
+            heights: match known.is_fixed() {
+                true => vec![0.0],
+                false => support::pile_heights(others.map(|i| &self.objects[i]), HIGHEST),
             },
             residual: &mut self.residual,
             object: known,
@@ -267,6 +276,10 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             .filter(|(i, _)| *i != object)
             .filter_map(|(_, (other, placement))| Some((other, placement.as_ref()?)));
         let mut heights = support::heights(known, &free, others);
+        if !is_last && !heights.contains(&before.location.z) {
+            // What it stands on may not be in its place yet.
+            heights.push(before.location.z);
+        }
         heights.sort_by(|a, b| {
             let [a, b] = [a, b].map(|height| (height - free.location.z).abs());
             a.total_cmp(&b)
@@ -274,8 +287,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         refinement.is_free = false;
         let mut best: Option<(Placement, Trial)> = None;
         for height in heights.into_iter().take(3) {
-            let (placement, trial) =
-                refinement.refined(free.at_height(height, eye), &stages[stages.len() - 1..]);
+            let (placement, trial) = refinement.refined(free.at_height(height, eye), stages);
             if best.is_none_or(|(_, best)| trial.gain < best.gain) {
                 best = Some((placement, trial));
             }
@@ -290,6 +302,15 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         };
         if is_last {
             settled = refinement.polished(settled, 0.004).0;
+        }
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "settle {object} free {:?} {} -> {:?} best {:?}",
+                free.location,
+                trial.gain,
+                settled.location,
+                best.map(|b| b.1.gain)
+            );
         }
         self.place(object, Some(settled));
         settled.location.distance(before.location) + (settled.yaw - before.yaw).abs()

@@ -19,8 +19,10 @@ const LEAST_BLOB: usize = 4;
 const HEIGHT_STEP: f32 = 0.6;
 /// Angle between the yaws that are tried, in rad.
 const YAW_STEP: f32 = 0.4;
+/// Number of heights near a free one that are tried.
+const SUPPORTS: usize = 3;
 /// Number of guesses that are refined for each seed.
-const REFINED: usize = 2;
+const REFINED: usize = 3;
 
 /// A placement that may be right.
 #[derive(Clone, Debug)]
@@ -40,8 +42,8 @@ pub(crate) struct Guess<'g, 'a, 'p> {
     pub blobs: Vec<(Blob, f32)>,
     /// The other objects' solids, and the windows in which they may be seen.
     pub others: Vec<(PictureWindow, Vec<DrawnSolid>)>,
-    /// The largest height, in units, of what it may stand on.
-    pub highest: f32,
+    /// The heights, in units, of what it may stand on, from 0 on.
+    pub heights: Vec<f32>,
 }
 
 /// A point of the picture about which an object may be seen.
@@ -68,6 +70,10 @@ impl<'p> Guess<'_, '_, 'p> {
         best
     }
 
+    fn highest(&self) -> f32 {
+        self.heights.last().copied().unwrap_or(0.0)
+    }
+
     fn seeds(&mut self) -> Vec<Seed> {
         let width = self.residual.seen().width as usize;
         let blobs = std::mem::take(&mut self.blobs);
@@ -82,6 +88,15 @@ impl<'p> Guess<'_, '_, 'p> {
                 pixel: middle,
                 open: *open,
             });
+            if (blob.pixels.len() as f32) < 0.8 * expected {
+                // What hides a part of it is mostly above it.
+                let rows = blob.pixels.iter().map(|pixel| pixel / width);
+                let bottom = rows.max().unwrap_or(0) as f32;
+                seeds.push(Seed {
+                    pixel: Vec2::new(middle.x, bottom - self.rows_at(middle) / 2.0),
+                    open: *open,
+                });
+            }
             if blob.pixels.len() as f32 > 1.4 * expected {
                 let spacing = (0.6 * expected.sqrt()).max(2.0) as usize;
                 let parts = parts_of(&blob.pixels, width, spacing);
@@ -114,6 +129,12 @@ impl<'p> Guess<'_, '_, 'p> {
         window.map_or(0.0, |window| 0.6 * window.area() as f32)
     }
 
+    /// The number of rows in which the object is seen there.
+    fn rows_at(&self, pixel: Vec2) -> f32 {
+        let window = self.window_at(&self.at(pixel, 0, 0.0, 0.0));
+        window.map_or(0.0, |window| window.rows.len() as f32)
+    }
+
     /// The placement whose middle is seen at a pixel, with its lowest point at this height.
     fn at(&self, pixel: Vec2, stance: usize, height: f32, yaw: f32) -> Placement {
         let own = &self.object.stances()[stance];
@@ -141,7 +162,7 @@ impl<'p> Guess<'_, '_, 'p> {
     /// Keeps all other objects, where this one may be.
     fn keep_about(&mut self, seed: &Seed) -> Option<()> {
         let windows = (0..self.object.stances().len())
-            .flat_map(|stance| [0.0, self.highest].map(|height| (stance, height)))
+            .flat_map(|stance| [0.0, self.highest()].map(|height| (stance, height)))
             .filter_map(|(stance, height)| {
                 self.window_at(&self.at(seed.pixel, stance, height, 0.4))
             });
@@ -196,7 +217,7 @@ impl<'p> Guess<'_, '_, 'p> {
             let best: Vec<_> = on_table.iter().take(2).map(|(it, _)| it.yaw).collect();
             tried.append(&mut on_table);
             let mut height = HEIGHT_STEP;
-            while height <= self.highest {
+            while height < self.highest() + HEIGHT_STEP / 2.0 {
                 for &yaw in &best {
                     let placement = self.at(seed.pixel, stance, height, yaw);
                     tried.push((placement, self.trial(&placement)));
@@ -221,18 +242,34 @@ impl<'p> Guess<'_, '_, 'p> {
 
     fn candidate(&mut self, seed: &Seed, placement: Placement) -> Option<Candidate> {
         let mut refinement = self.refinement();
-        let (mut placement, mut trial) = refinement.refined(placement, &COARSE);
-        let lowest = -self.object.stance(&placement).low;
-        if placement.location.z < lowest {
-            placement = placement.at_height(lowest, self.residual.eye());
-            trial = self.trial(&placement);
-        }
+        let (free, _) = refinement.refined(placement, &COARSE);
+        let (placement, trial) = self.supported(&free)?;
         let window = self.window_at(&placement)?;
         (trial.gain < 0.0).then(|| Candidate {
             placement,
             score: -trial.gain / (seed.open + trial.misfit).max(1.0),
             window,
         })
+    }
+}
+
+impl Guess<'_, '_, '_> {
+    /// The best placement near one among those at the heights at which the object may stand.
+    fn supported(&mut self, free: &Placement) -> Option<(Placement, Trial)> {
+        let low = self.object.stance(free).low;
+        let mut heights: Vec<_> = self.heights.iter().map(|height| height - low).collect();
+        let distance = |height: &f32| (height - free.location.z).abs();
+        heights.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let eye = self.residual.eye();
+        let mut refinement = Refinement {
+            residual: self.residual,
+            object: self.object,
+            is_free: false,
+        };
+        let near = heights.into_iter().take(SUPPORTS);
+        let refined =
+            near.map(|height| refinement.refined(free.at_height(height, eye), &COARSE[1..]));
+        refined.min_by(|a, b| a.1.gain.total_cmp(&b.1.gain))
     }
 }
 

@@ -146,6 +146,19 @@ impl KnownObject {
         self == other
     }
 
+    /// The heights above its lowest point at which other objects may stand on it or in it, in its first stance.
+    pub(crate) fn seats(&self) -> Vec<f32> {
+        let stance = &self.stances[0];
+        let mut seats: Vec<f32> = Vec::new();
+        for solid in &stance.touched {
+            let seat = PlacedSolid::of(solid, Pose::IDENTITY).heights()[1] - stance.low;
+            if seats.iter().all(|known| (known - seat).abs() > SAME) {
+                seats.push(seat);
+            }
+        }
+        seats
+    }
+
     /// The pose of a placement.
     pub(crate) fn pose(&self, placement: &Placement) -> Pose {
         let stance = self.stance(placement);

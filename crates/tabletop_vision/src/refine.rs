@@ -24,6 +24,9 @@ pub(crate) struct Stage {
     most: u32,
 }
 
+/// Damping of steps, as a part of the curvature.
+const DAMPING: f64 = 1e-3;
+
 /// From a rough guess, some pixels off. A pixel is about 0.1 units.
 pub(crate) const COARSE: [Stage; 2] = [
     Stage {
@@ -80,8 +83,9 @@ impl Refinement<'_, '_> {
             let mut best = self.try_at(&placement, stage.outlier).gain;
             for _ in 0..stage.most {
                 let equations = self.equations(&placement, stage.step, stage.outlier);
-                let better = [1e-3, 1e-1, 1.0].into_iter().find_map(|damping| {
-                    let next = self.stepped(&placement, &equations.step(damping), stage.step);
+                let step = equations.step(DAMPING);
+                let better = [1.0, 0.4, 0.15].into_iter().find_map(|part| {
+                    let next = self.stepped(&placement, &step.map(|by| by * part), stage.step);
                     let gain = self.try_at(&next, stage.outlier).gain;
                     (gain < best).then_some((next, gain))
                 });

@@ -46,3 +46,29 @@ pub(crate) fn heights<'o>(
 fn is_above(solid: &PlacedSolid, below: &PlacedSolid) -> bool {
     solid.gap_from_above(below) < BESIDE
 }
+
+/// The heights, from the lowest on and up to a largest one, at which piles of these objects may end on which another one stands.
+pub(crate) fn pile_heights<'o>(
+    objects: impl IntoIterator<Item = &'o KnownObject>,
+    highest: f32,
+) -> Vec<f32> {
+    /// Heights nearer to each other than this, in units, are tried once.
+    const ALIKE: f32 = 0.02;
+    const MOST: usize = 40;
+    let mut heights = vec![0.0];
+    for object in objects {
+        let seats = object.seats();
+        let sums: Vec<_> = heights
+            .iter()
+            .flat_map(|below| seats.iter().map(move |seat| below + seat))
+            .collect();
+        for height in sums {
+            let is_new = heights.iter().all(|known| (known - height).abs() > ALIKE);
+            if is_new && height <= highest && heights.len() < MOST {
+                heights.push(height);
+            }
+        }
+    }
+    heights.sort_by(f32::total_cmp);
+    heights
+}
