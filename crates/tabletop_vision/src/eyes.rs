@@ -8,6 +8,7 @@ use tabletop_geometry::Pose;
 use crate::{
     arrangement::Arrangement,
     clutter::{Clutter, clutter},
+    identity::keep_identities,
     known::{KnownObject, YawSymmetry},
     refine::{Refinement, deviations},
     residual::{OUTLIER, Residual},
@@ -130,7 +131,8 @@ impl Eyes {
         arrangement.settle_all(3);
         arrangement.reconsider();
         let percepts = (0..self.objects.len()).map(|i| percept(&mut arrangement, i));
-        let objects: Vec<_> = percepts.collect();
+        let mut objects: Vec<_> = percepts.collect();
+        keep_identities(&self.objects, &self.poses, &mut objects);
         let least = arrangement.unexplained();
         let clutter = clutter(arrangement.residual.size(), |i| {
             arrangement.square(i) > least
@@ -160,7 +162,7 @@ impl Eyes {
 }
 
 impl ObjectPercept {
-    const HIDDEN: Self = Self {
+    pub(crate) const HIDDEN: Self = Self {
         pose: None,
         deviation: PoseDeviation {
             location: Vec3::INFINITY,

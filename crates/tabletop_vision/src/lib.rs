@@ -40,6 +40,7 @@ mod arrangement;
 mod clutter;
 mod eyes;
 mod guess;
+mod identity;
 mod known;
 mod normal;
 mod refine;
