@@ -4,10 +4,10 @@ use bevy::math::Vec3;
 use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
-    guess::{Candidate, Guess},
+    guess::{Candidate, GOOD_SCORE, Guess},
     known::{KnownObject, Placement},
     refine::{FINE, Refinement, Stage},
-    residual::{OUTLIER, Residual, Trial, for_pixels, loss},
+    residual::{OUTLIER, Residual, Trial, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
     support,
 };
@@ -22,6 +22,8 @@ const SUPPORTED: f32 = 0.05;
 const BAD: f32 = 150.0;
 /// The largest height, in units, on which objects that nothing is known about are looked for.
 const HIGHEST: f32 = 4.0;
+/// The loss of a pixel, on average, below which an object is explained well, without noise.
+const GOOD: f32 = 25.0;
 /// Largest number of attempts to find a better arrangement.
 const ATTEMPTS: usize = 4;
 
@@ -117,11 +119,9 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     pub fn compare(&mut self, window: &PictureWindow) {
         let solids = self.others(None, window);
         self.residual.keep(&solids, window);
-        let residual = &self.residual;
-        let squares = &mut self.squares;
-        for_pixels(window, residual.seen().width, |i| {
-            squares[i] = residual.square(i);
-        });
+        for row in rows(window, self.residual.seen().width) {
+            self.squares[row.clone()].copy_from_slice(&self.residual.squares()[row]);
+        }
     }
 
     /// Keeps everything but one object, within a window.
@@ -170,61 +170,78 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         })
     }
 
+    /// Finds all objects without a placement, and settles all.
+    pub fn arrange(&mut self, chance: &mut impl FnMut() -> f32) {
+        self.find_all(chance);
+        self.settle_all(1, false);
+        if self.placements.contains(&None) {
+            // There may be more room for them now.
+            self.find_all(chance);
+            self.settle_all(1, false);
+        }
+        self.settle_all(2, true);
+    }
+
     /// Finds all objects without a placement, the one that explains most of its pixels first.
-    pub fn find_all(&mut self, chance: &mut impl FnMut() -> f32) {
+    fn find_all(&mut self, chance: &mut impl FnMut() -> f32) {
         let mut candidates: Vec<Option<Option<Candidate>>> = vec![None; self.objects.len()];
-        loop {
-            for i in 0..self.objects.len() {
-                if self.placements[i].is_some() || candidates[i].is_some() {
-                    continue;
-                }
-                // Of objects that look the same, the first one is looked for.
-                let twin = (0..i).find(|&j| {
-                    self.placements[j].is_none() && self.objects[j].looks_like(&self.objects[i])
-                });
-                if twin.is_none() {
-                    candidates[i] = Some(self.guess(i));
-                }
-            }
-            let best = (0..self.objects.len())
-                .filter_map(|i| Some((i, candidates[i].as_ref()?.as_ref()?)))
-                .map(|(i, candidate)| (i, candidate.placement, candidate.score * chance()))
-                .reduce(|best, next| if next.2 > best.2 { next } else { best });
-            let Some((object, placement, _)) = best.filter(|best| best.2 > LEAST_SCORE) else {
-                return;
-            };
-            if std::env::var("DBG").is_ok() {
-                for (i, c) in candidates.iter().enumerate() {
-                    eprintln!(
-                        "  cand {i} {:?}",
-                        c.as_ref().map(|c| c.as_ref().map(|c| (
-                            c.placement.location,
-                            c.placement.yaw,
-                            c.score
-                        )))
-                    );
-                }
-                eprintln!("place {object} {placement:?}");
-            }
+        while let Some((object, placement)) = self.next_found(&mut candidates, chance) {
             self.place(object, Some(placement));
             let window = self.windows[object].clone().unwrap_or_default();
             let wide = window.widened(4, self.residual.size());
             for i in 0..self.objects.len() {
                 let is_stale = candidates[i].as_ref().is_some_and(|candidate| {
-                    candidate.as_ref().is_some_and(|candidate| {
-                        self.colors[i] == self.colors[object]
-                            || !candidate.window.intersection(&wide).is_empty()
-                    })
+                    self.colors[i] == self.colors[object]
+                        || candidate.as_ref().is_none_or(|candidate| {
+                            !candidate.window.intersection(&wide).is_empty()
+                        })
                 });
-                if i == object || is_stale {
+                if is_stale {
                     candidates[i] = None;
                 }
             }
         }
     }
 
-    /// The best candidate for an object among those that are placed.
-    fn guess(&mut self, object: usize) -> Option<Candidate> {
+    /// The object to be placed next: the first one that is well explained, beginning with those of which most is seen; else the best.
+    fn next_found(
+        &mut self,
+        candidates: &mut [Option<Option<Candidate>>],
+        chance: &mut impl FnMut() -> f32,
+    ) -> Option<(usize, Placement)> {
+        let open = (0..self.objects.len()).filter(|&i| {
+            // Of objects that look the same, the first one is looked for.
+            let is_alike = |j: usize| self.objects[j] == self.objects[i];
+            self.placements[i].is_none()
+                && !(0..i).any(|j| self.placements[j].is_none() && is_alike(j))
+        });
+        let open: Vec<_> = open.collect();
+        let mut order: Vec<_> = open
+            .into_iter()
+            .filter_map(|i| Some((i, self.guess(i)?.promise() * chance())))
+            .collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut best: Option<(usize, Placement, f32)> = None;
+        for (i, _) in order {
+            if candidates[i].is_none() {
+                candidates[i] = Some(self.guess(i).and_then(|mut guess| guess.best()));
+            }
+            let Some(candidate) = candidates[i].as_ref().and_then(Option::as_ref) else {
+                continue;
+            };
+            if candidate.score > GOOD_SCORE {
+                return Some((i, candidate.placement));
+            }
+            let score = candidate.score * chance();
+            if score > LEAST_SCORE && best.is_none_or(|best| score > best.2) {
+                best = Some((i, candidate.placement, score));
+            }
+        }
+        best.map(|(object, placement, _)| (object, placement))
+    }
+
+    /// The search for an object among those that are placed; `None` if no pixel may show it.
+    fn guess(&mut self, object: usize) -> Option<Guess<'_, 'a, 'p>> {
         let blobs = self.open_blobs(object).into_iter().map(|blob| {
             let losses = blob.pixels.iter().map(|&i| loss(self.squares[i], OUTLIER));
             let open = losses.sum();
@@ -241,9 +258,15 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             self.objects[i].draw(&placement, i as u32 + 1, &mut solids);
             Some((window, solids))
         });
+        let taken = others.clone().filter_map(|i| {
+            let placement = self.placements[i]?;
+            Some(self.objects[i].touched(&placement))
+        });
+        let taken = taken.flatten();
         let known = &self.objects[object];
-        let mut guess = Guess {
+        Some(Guess {
             others: placed.collect(),
+            taken: taken.collect(),
             heights: match known.is_fixed() {
                 true => vec![0.0],
                 false => support::pile_heights(others.map(|i| &self.objects[i]), HIGHEST),
@@ -251,12 +274,11 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             residual: &mut self.residual,
             object: known,
             blobs,
-        };
-        guess.best()
+        })
     }
 
     /// Refines an object among the others: on what it stands on, or in the air. Returns by how much, in units, it moved.
-    pub fn settle(&mut self, object: usize, stages: &[Stage], is_last: bool) -> f32 {
+    fn settle(&mut self, object: usize, stages: &[Stage], is_last: bool) -> f32 {
         let Some(before) = self.placements[object] else {
             return 0.0;
         };
@@ -266,50 +288,57 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         self.keep_others(object, &window.widened(6, self.residual.size()));
         let known = &self.objects[object];
         let eye = self.residual.eye();
+        let good = GOOD + 3.3 * self.noise;
         let mut refinement = Refinement {
             residual: &mut self.residual,
             object: known,
             is_free: !known.is_fixed(),
         };
-        let (free, trial) = refinement.refined(before, stages);
         let others = (self.objects.iter().zip(&self.placements).enumerate())
             .filter(|(i, _)| *i != object)
             .filter_map(|(_, (other, placement))| Some((other, placement.as_ref()?)));
-        let mut heights = support::heights(known, &free, others);
-        if !is_last && !heights.contains(&before.location.z) {
-            // What it stands on may not be in its place yet.
-            heights.push(before.location.z);
-        }
-        heights.sort_by(|a, b| {
-            let [a, b] = [a, b].map(|height| (height - free.location.z).abs());
-            a.total_cmp(&b)
-        });
         refinement.is_free = false;
-        let mut best: Option<(Placement, Trial)> = None;
-        for height in heights.into_iter().take(3) {
-            let (placement, trial) = refinement.refined(free.at_height(height, eye), stages);
-            if best.is_none_or(|(_, best)| trial.gain < best.gain) {
-                best = Some((placement, trial));
-            }
+        let (mut settled, trial) = refinement.refined(before, stages);
+        let heights = support::heights(known, &settled, others.clone());
+        let stands = heights
+            .iter()
+            .any(|height| (height - settled.location.z).abs() < 1e-3);
+        if !known.is_fixed() && (!stands || trial.misfit > good * trial.pixels as f32) {
+            let here = settled;
+            refinement.is_free = true;
+            let (free, free_trial) = refinement.refined(here, stages);
+            refinement.is_free = false;
+            let mut heights = support::heights(known, &free, others);
+            heights.sort_by(|a, b| {
+                let [a, b] = [a, b].map(|height| (height - free.location.z).abs());
+                a.total_cmp(&b)
+            });
+            let near = heights.into_iter().take(3);
+            let standing =
+                near.map(|height| refinement.refined(free.at_height(height, eye), stages));
+            let best = standing.min_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+            // What it stands on may not be in its place yet.
+            let (hovering, gain) =
+                match !is_last && trial.gain < free_trial.gain + SUPPORTED * trial.gain.abs() {
+                    true => (here, trial.gain),
+                    false => (free, free_trial.gain),
+                };
+            let allowance = SUPPORTED * gain.abs() + 20.0 * self.noise.max(1.0);
+            settled = match best {
+                Some((placement, standing)) if standing.gain <= gain + allowance => placement,
+                _ => {
+                    refinement.is_free = true;
+                    hovering
+                }
+            };
         }
-        let allowance = SUPPORTED * trial.gain.abs() + 20.0 * self.noise.max(1.0);
-        let mut settled = match best {
-            Some((placement, supported)) if supported.gain <= trial.gain + allowance => placement,
-            _ => {
-                refinement.is_free = true;
-                free
-            }
-        };
         if is_last {
             settled = refinement.polished(settled, 0.004).0;
         }
         if std::env::var("DBG").is_ok() {
             eprintln!(
-                "settle {object} free {:?} {} -> {:?} best {:?}",
-                free.location,
-                trial.gain,
-                settled.location,
-                best.map(|b| b.1.gain)
+                "settle {object} {:?} {} -> {:?}",
+                before.location, trial.gain, settled.location
             );
         }
         self.place(object, Some(settled));
@@ -317,18 +346,26 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// Settles all objects, in turn.
-    pub fn settle_all(&mut self, rounds: usize) {
+    fn settle_all(&mut self, rounds: usize, is_end: bool) {
         let mut has_moved = vec![true; self.objects.len()];
         for round in 0..rounds {
-            let is_last = round + 1 == rounds;
-            for i in 0..self.objects.len() {
+            let is_last = is_end && round + 1 == rounds;
+            // What stands on others comes after them.
+            let mut order: Vec<_> = (0..self.objects.len()).collect();
+            let lowest = |i: usize| {
+                let placement = self.placements[i]?;
+                Some(placement.location.z + self.objects[i].stance(&placement).low)
+            };
+            let height = |i: usize| lowest(i).unwrap_or(f32::INFINITY);
+            order.sort_by(|&a, &b| height(a).total_cmp(&height(b)));
+            for i in order {
                 let is_touched = (0..self.objects.len()).any(|j| {
                     let near = self.windows[i].as_ref().zip(self.windows[j].as_ref());
                     has_moved[j]
                         && near.is_some_and(|(own, other)| !own.intersection(other).is_empty())
                 });
                 if is_touched || is_last {
-                    let stages = if round == 0 { &FINE[..] } else { &FINE[1..] };
+                    let stages = if is_end { &FINE[1..] } else { &FINE[..1] };
                     has_moved[i] = self.settle(i, stages, is_last) > 1e-3;
                 }
             }
@@ -415,11 +452,10 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             for &i in &away {
                 self.place(i, None);
             }
-            self.find_all(&mut || match attempt {
+            self.arrange(&mut || match attempt {
                 0 => 1.0,
                 _ => random.between((0.4, 1.0)),
             });
-            self.settle_all(2);
             if self.loss() >= before.loss - 1.0 {
                 self.restore(&before);
             }

@@ -125,11 +125,27 @@ impl Eyes {
             figures: scenery.figures.clone(),
             markers: Vec::new(),
         };
+        let t0 = std::time::Instant::now();
+        let rep = |what: &str| {
+            if std::env::var("TIM").is_ok() {
+                use crate::residual::*;
+                use std::sync::atomic::Ordering::Relaxed;
+                eprintln!(
+                    "{what} {:.2} ms trials {} draws {} keeps {}",
+                    t0.elapsed().as_secs_f64() * 1e3,
+                    TRIALS.swap(0, Relaxed),
+                    DRAWS.swap(0, Relaxed),
+                    KEEPS.swap(0, Relaxed)
+                );
+            }
+        };
         let residual = Residual::new(picture, &ground, self.camera);
         let mut arrangement = Arrangement::empty(&self.objects, residual);
-        arrangement.find_all(&mut || 1.0);
-        arrangement.settle_all(3);
+        rep("empty");
+        arrangement.arrange(&mut || 1.0);
+        rep("settled");
         arrangement.reconsider();
+        rep("reconsidered");
         let percepts = (0..self.objects.len()).map(|i| percept(&mut arrangement, i));
         let mut objects: Vec<_> = percepts.collect();
         keep_identities(&self.objects, &self.poses, &mut objects);
@@ -138,6 +154,7 @@ impl Eyes {
             arrangement.square(i) > least
         });
         let noise = arrangement.noise.sqrt();
+        rep("percept");
         for (own, seen) in self.poses.iter_mut().zip(&objects) {
             *own = seen.pose.or(*own);
         }
@@ -196,7 +213,7 @@ fn percept(arrangement: &mut Arrangement, object: usize) -> ObjectPercept {
         object: known,
         is_free: false,
     };
-    let equations = refinement.equations(&placement, STEP, OUTLIER);
+    let equations = refinement.equations(&placement, STEP, true, OUTLIER);
     let variance = arrangement.noise.max(ROUNDING);
     let ray = arrangement.ray_to(placement.location);
     let stance = known.stance(&placement);

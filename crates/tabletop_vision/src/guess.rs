@@ -2,12 +2,14 @@
 
 use bevy::math::Vec2;
 use tabletop_camera::{DrawnSolid, PictureWindow};
+use tabletop_geometry::PlacedSolid;
 
 use crate::{
     known::{KnownObject, Placement},
-    refine::{COARSE, Refinement},
+    refine::{COARSE, Refinement, Stage},
     residual::{OUTLIER, Residual, Trial},
     segment::Blob,
+    support::has_room,
 };
 
 /// Largest number of blobs, and of seeds in a blob.
@@ -19,10 +21,12 @@ const LEAST_BLOB: usize = 4;
 const HEIGHT_STEP: f32 = 0.6;
 /// Angle between the yaws that are tried, in rad.
 const YAW_STEP: f32 = 0.4;
+/// The part of what it should explain above which a candidate is right.
+pub(crate) const GOOD_SCORE: f32 = 0.85;
 /// Number of heights near a free one that are tried.
 const SUPPORTS: usize = 3;
 /// Number of guesses that are refined for each seed.
-const REFINED: usize = 3;
+const REFINED: usize = 5;
 
 /// A placement that may be right.
 #[derive(Clone, Debug)]
@@ -42,6 +46,8 @@ pub(crate) struct Guess<'g, 'a, 'p> {
     pub blobs: Vec<(Blob, f32)>,
     /// The other objects' solids, and the windows in which they may be seen.
     pub others: Vec<(PictureWindow, Vec<DrawnSolid>)>,
+    /// What other objects take up.
+    pub taken: Vec<PlacedSolid>,
     /// The heights, in units, of what it may stand on, from 0 on.
     pub heights: Vec<f32>,
 }
@@ -53,21 +59,87 @@ struct Seed {
     open: f32,
 }
 
+impl Seed {
+    /// The part that an object explains of what it should.
+    fn score(&self, trial: &Trial) -> f32 {
+        -trial.gain / (self.open + trial.misfit).max(1.0)
+    }
+}
+
 impl<'p> Guess<'_, '_, 'p> {
+    /// About which part of the object's pixels is seen in one piece, at most 1.
+    pub fn promise(&self) -> f32 {
+        let width = self.residual.seen().width as usize;
+        let parts = self.blobs.iter().take(MOST_BLOBS).map(|(blob, _)| {
+            let expected = self.pixels_at(middle_of(&blob.pixels, width));
+            blob.pixels.len() as f32 / expected.max(LEAST_BLOB as f32)
+        });
+        parts.fold(0.0, f32::max).min(1.0)
+    }
+
     /// The best candidate for the object.
     pub fn best(&mut self) -> Option<Candidate> {
-        let mut best: Option<Candidate> = None;
-        for seed in self.seeds() {
-            for candidate in self.candidates(&seed) {
-                if best
-                    .as_ref()
-                    .is_none_or(|best| candidate.score > best.score)
-                {
-                    best = Some(candidate);
-                }
+        let seeds = self.seeds();
+        let mut tried = Vec::new();
+        for (i, seed) in seeds.iter().enumerate() {
+            if self.keep_about(seed).is_some() {
+                let own = self.tried(seed).into_iter();
+                tried.extend(own.map(|(placement, trial)| (i, placement, seed.score(&trial))));
             }
         }
-        best
+        tried.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let mut picked: Vec<(usize, Placement)> = Vec::new();
+        for (i, placement, _) in tried {
+            let differs = picked.iter().all(|(_, other)| {
+                let radius = self.object.stance(&placement).radius;
+                other.stance != placement.stance
+                    || other.location.distance(placement.location) > 0.5 * radius
+                    || (other.yaw - placement.yaw).abs() > 1.5 * YAW_STEP
+            });
+            if differs && picked.len() < REFINED {
+                picked.push((i, placement));
+            }
+        }
+        let mut best: Option<(usize, Placement, Trial, f32)> = None;
+        for (i, placement) in picked {
+            self.keep_about(&seeds[i]);
+            let Some((placement, trial)) = self.supported(&placement, 1, &COARSE) else {
+                continue;
+            };
+            let score = seeds[i].score(&trial);
+            let is_possible = has_room(self.object, &placement, &self.taken);
+            if is_possible && best.as_ref().is_none_or(|best| score > best.3) {
+                best = Some((i, placement, trial, score));
+            }
+            if score > GOOD_SCORE {
+                break;
+            }
+        }
+        let (i, placement, trial, score) = best?;
+        if score < GOOD_SCORE && self.heights.len() > 1 {
+            self.keep_about(&seeds[i]);
+            if let Some((other, other_trial)) = self.at_other_height(&placement)
+                && other_trial.gain < trial.gain
+                && has_room(self.object, &other, &self.taken)
+            {
+                return self.candidate(&seeds[i], &other, &other_trial);
+            }
+        }
+        self.candidate(&seeds[i], &placement, &trial)
+    }
+
+    fn at_other_height(&mut self, placement: &Placement) -> Option<(Placement, Trial)> {
+        let (free, _) = self.refinement().refined(*placement, &COARSE);
+        self.supported(&free, SUPPORTS, &COARSE[1..])
+    }
+
+    fn candidate(&self, seed: &Seed, placement: &Placement, trial: &Trial) -> Option<Candidate> {
+        let window = self.window_at(placement)?;
+        (trial.gain < 0.0).then(|| Candidate {
+            placement: *placement,
+            score: seed.score(trial),
+            window,
+        })
     }
 
     fn highest(&self) -> f32 {
@@ -177,29 +249,6 @@ impl<'p> Guess<'_, '_, 'p> {
         Some(())
     }
 
-    fn candidates(&mut self, seed: &Seed) -> Vec<Candidate> {
-        if self.keep_about(seed).is_none() {
-            return Vec::new();
-        }
-        let mut tried = self.tried(seed);
-        tried.sort_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
-        let mut picked: Vec<Placement> = Vec::new();
-        for (placement, _) in tried {
-            let differs = picked.iter().all(|other| {
-                other.stance != placement.stance
-                    || (other.location.z - placement.location.z).abs() > HEIGHT_STEP / 2.0
-                    || (other.yaw - placement.yaw).abs() > YAW_STEP / 2.0
-            });
-            if differs && picked.len() < REFINED {
-                picked.push(placement);
-            }
-        }
-        let candidates = picked
-            .into_iter()
-            .filter_map(|placement| self.candidate(seed, placement));
-        candidates.collect()
-    }
-
     /// Placements about a seed: first on the table with all yaws, then with the best of these at other heights.
     fn tried(&mut self, seed: &Seed) -> Vec<(Placement, Trial)> {
         let mut tried = Vec::new();
@@ -239,23 +288,16 @@ impl<'p> Guess<'_, '_, 'p> {
     fn trial(&mut self, placement: &Placement) -> Trial {
         self.refinement().try_at(placement, OUTLIER)
     }
-
-    fn candidate(&mut self, seed: &Seed, placement: Placement) -> Option<Candidate> {
-        let mut refinement = self.refinement();
-        let (free, _) = refinement.refined(placement, &COARSE);
-        let (placement, trial) = self.supported(&free)?;
-        let window = self.window_at(&placement)?;
-        (trial.gain < 0.0).then(|| Candidate {
-            placement,
-            score: -trial.gain / (seed.open + trial.misfit).max(1.0),
-            window,
-        })
-    }
 }
 
 impl Guess<'_, '_, '_> {
     /// The best placement near one among those at the heights at which the object may stand.
-    fn supported(&mut self, free: &Placement) -> Option<(Placement, Trial)> {
+    fn supported(
+        &mut self,
+        free: &Placement,
+        count: usize,
+        stages: &[Stage],
+    ) -> Option<(Placement, Trial)> {
         let low = self.object.stance(free).low;
         let mut heights: Vec<_> = self.heights.iter().map(|height| height - low).collect();
         let distance = |height: &f32| (height - free.location.z).abs();
@@ -266,9 +308,8 @@ impl Guess<'_, '_, '_> {
             object: self.object,
             is_free: false,
         };
-        let near = heights.into_iter().take(SUPPORTS);
-        let refined =
-            near.map(|height| refinement.refined(free.at_height(height, eye), &COARSE[1..]));
+        let near = heights.into_iter().take(count);
+        let refined = near.map(|height| refinement.refined(free.at_height(height, eye), stages));
         refined.min_by(|a, b| a.1.gain.total_cmp(&b.1.gain))
     }
 }

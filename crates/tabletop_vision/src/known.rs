@@ -2,10 +2,10 @@
 
 use std::f32::consts::TAU;
 
-use bevy::math::{Quat, Vec3};
+use bevy::math::{Quat, Vec3, Vec3Swizzles as _};
 use tabletop_camera::DrawnSolid;
 use tabletop_core::Shape;
-use tabletop_geometry::{PlacedSolid, Pose, Primitive, Rgb, Solid, turn_about};
+use tabletop_geometry::{Bounds, PlacedSolid, Pose, Primitive, Rgb, Solid, turn_about};
 
 /// An object whose shape and colours are known, and whose pose is not.
 ///
@@ -141,9 +141,18 @@ impl KnownObject {
         colors
     }
 
-    /// True if the two cannot be told apart.
-    pub(crate) fn looks_like(&self, other: &Self) -> bool {
-        self == other
+    /// The angle in rad, if there is one, by which this object has to be turned about the vertical to look like another, both in their
+    /// first stance: a bar along X looks like one along Y after a quarter turn.
+    pub fn turn_to(&self, other: &Self) -> Option<f32> {
+        let [own, theirs] = [self, other].map(|object| &object.stances[0]);
+        let is_as_large = (own.radius - theirs.radius).abs() < SAME
+            && (own.low - theirs.low).abs() < SAME
+            && (own.high - theirs.high).abs() < SAME;
+        let quarters = (0..4).map(|quarter| quarter as f32 * TAU / 4.0);
+        let turns = quarters.filter(|_| is_as_large);
+        turns
+            .into_iter()
+            .find(|&turn| fills_alike(&theirs.touched, &own.touched, turn_about(Vec3::Z, turn)))
     }
 
     /// The heights above its lowest point at which other objects may stand on it or in it, in its first stance.
@@ -277,7 +286,7 @@ impl Stance {
         let reach = sides.flat_map(|way| placed.iter().map(move |it| it.farthest(way).dot(way)));
         Self {
             rotation,
-            symmetry: symmetry(&drawn),
+            symmetry: symmetry(&drawn, &touched),
             radius: reach.fold(0.05, f32::max),
             drawn,
             touched,
@@ -287,22 +296,56 @@ impl Stance {
     }
 }
 
-fn symmetry(solids: &[Primitive]) -> YawSymmetry {
+fn symmetry(drawn: &[Primitive], touched: &[Primitive]) -> YawSymmetry {
     const MOST_TURNS: u32 = 12;
-    if solids.iter().all(is_round) {
+    if drawn.iter().all(is_round) {
         return YawSymmetry::Any;
     }
     let turns = (2..=MOST_TURNS).rev().find(|&turns| {
-        let turn = Pose::new(Vec3::ZERO, turn_about(Vec3::Z, TAU / turns as f32));
-        solids.iter().all(|solid| {
-            let turned = Primitive {
-                pose: turn * solid.pose,
-                ..solid.clone()
-            };
-            solids.iter().any(|other| looks_the_same(&turned, other))
-        })
+        let turn = turn_about(Vec3::Z, TAU / turns as f32);
+        fills_alike(touched, touched, turn)
     });
     YawSymmetry::Turns(turns.unwrap_or(1))
+}
+
+/// True if solids fill the same room, with the same colours, as others do after a turn.
+fn fills_alike(one: &[Primitive], other: &[Primitive], turn: Quat) -> bool {
+    /// Points along each axis, and the part of all that may differ: those next to a surface, by rounding.
+    const POINTS: i32 = 24;
+    const DIFFERING: f32 = 0.002;
+    let bounds = one
+        .iter()
+        .map(|solid| Bounds::of_primitive(solid, Pose::IDENTITY));
+    let Some(bounds) = bounds.reduce(Bounds::union) else {
+        return other.is_empty();
+    };
+    let differing = (0..POINTS * POINTS * POINTS).filter(|i| {
+        let cell = [i % POINTS, i / POINTS % POINTS, i / POINTS / POINTS];
+        let part = cell.map(|at| (at as f32 + 0.5) / POINTS as f32);
+        let point = bounds.low + (bounds.high - bounds.low) * Vec3::from(part);
+        color_at(one, point) != color_at(other, turn.inverse() * point)
+    });
+    differing.count() as f32 <= DIFFERING * (POINTS * POINTS * POINTS) as f32
+}
+
+/// The colour of the first solid that contains a point.
+fn color_at(solids: &[Primitive], point: Vec3) -> Option<Rgb> {
+    let around = solids.iter().find(|solid| contains(solid, point));
+    around.map(|solid| solid.color)
+}
+
+fn contains(solid: &Primitive, point: Vec3) -> bool {
+    let point = solid.pose.inverse() * point;
+    match &solid.solid {
+        Solid::Cuboid(span) => point.abs().cmple(*span / 2.0).all(),
+        Solid::Cylinder { radius, yspan } => {
+            point.y.abs() <= yspan / 2.0 && point.xz().length() <= *radius
+        }
+        Solid::Ball(radius) => point.length() <= *radius,
+        Solid::Polyhedron(polyhedron) => polyhedron
+            .faces()
+            .all(|[a, b, c]| (b - a).cross(c - a).dot(point - a) <= 0.0),
+    }
 }
 
 /// True if a solid looks the same after every turn about the vertical through the origin.
@@ -315,56 +358,4 @@ fn is_round(solid: &Primitive) -> bool {
         Solid::Polyhedron(polyhedron) => is_central && polyhedron.axis().is_some_and(is_upright),
         Solid::Cuboid(_) => false,
     }
-}
-
-fn looks_the_same(one: &Primitive, other: &Primitive) -> bool {
-    if one.color != other.color || one.pose.location.distance(other.pose.location) > SAME {
-        return false;
-    }
-    let axis = |solid: &Primitive| solid.pose.rotation * Vec3::Y;
-    match (&one.solid, &other.solid) {
-        (Solid::Ball(a), Solid::Ball(b)) => (a - b).abs() < SAME,
-        (
-            Solid::Cylinder {
-                radius: a,
-                yspan: a_span,
-            },
-            Solid::Cylinder {
-                radius: b,
-                yspan: b_span,
-            },
-        ) => {
-            (a - b).abs() < SAME
-                && (a_span - b_span).abs() < SAME
-                && axis(one).cross(axis(other)).length() < SAME
-        }
-        (Solid::Cuboid(a), Solid::Cuboid(b)) => is_same_set(&corners(one, *a), &corners(other, *b)),
-        (Solid::Polyhedron(a), Solid::Polyhedron(b)) => {
-            let corners = |polyhedron: &tabletop_geometry::Polyhedron, solid: &Primitive| {
-                let corners = polyhedron.corners().iter();
-                corners
-                    .map(|&corner| solid.pose * corner)
-                    .collect::<Vec<_>>()
-            };
-            is_same_set(&corners(a, one), &corners(b, other))
-        }
-        (Solid::Ball(_) | Solid::Cylinder { .. } | Solid::Cuboid(_) | Solid::Polyhedron(_), _) => {
-            false
-        }
-    }
-}
-
-fn corners(solid: &Primitive, span: Vec3) -> Vec<Vec3> {
-    let corner = |i: u32| {
-        let side = |axis: u32| if i >> axis & 1 == 1 { 0.5 } else { -0.5 };
-        solid.pose * (span * Vec3::new(side(0), side(1), side(2)))
-    };
-    (0..8).map(corner).collect()
-}
-
-fn is_same_set(one: &[Vec3], other: &[Vec3]) -> bool {
-    one.len() == other.len()
-        && one
-            .iter()
-            .all(|a| other.iter().any(|b| a.distance(*b) < SAME))
 }

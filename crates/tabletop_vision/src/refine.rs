@@ -2,12 +2,13 @@
 //! away to both sides: smooth edges make that exact to a small part of a pixel.
 
 use bevy::math::Vec3;
-use tabletop_camera::DrawnSolid;
+use tabletop_camera::{DrawnSolid, PictureWindow};
+use tabletop_core::Picture;
 
 use crate::{
     known::{KnownObject, Placement, YawSymmetry},
     normal::NormalEquations,
-    residual::{OUTLIER, Residual, TRIED, Trial, for_pixels},
+    residual::{OUTLIER, Residual, TRIED, Trial, rows, square_of},
 };
 
 /// The parameters: along X and Y, along the ray from the eye, and about the vertical.
@@ -19,6 +20,8 @@ pub(crate) type PoseEquations = NormalEquations<PARAMETERS>;
 pub(crate) struct Stage {
     /// Step of the derivatives, in units.
     step: f32,
+    /// True if it goes to both sides.
+    is_central: bool,
     outlier: f32,
     /// Largest number of steps.
     most: u32,
@@ -31,13 +34,15 @@ const DAMPING: f64 = 1e-3;
 pub(crate) const COARSE: [Stage; 2] = [
     Stage {
         step: 0.2,
-        outlier: 100_000.0,
+        is_central: false,
+        outlier: 300_000.0,
         most: 5,
     },
     Stage {
         step: 0.08,
-        outlier: 30_000.0,
-        most: 3,
+        is_central: true,
+        outlier: 60_000.0,
+        most: 4,
     },
 ];
 
@@ -45,11 +50,13 @@ pub(crate) const COARSE: [Stage; 2] = [
 pub(crate) const FINE: [Stage; 2] = [
     Stage {
         step: 0.06,
-        outlier: OUTLIER,
+        is_central: true,
+        outlier: 3.0 * OUTLIER,
         most: 4,
     },
     Stage {
         step: 0.02,
+        is_central: true,
         outlier: OUTLIER,
         most: 4,
     },
@@ -82,13 +89,28 @@ impl Refinement<'_, '_> {
         for stage in stages {
             let mut best = self.try_at(&placement, stage.outlier).gain;
             for _ in 0..stage.most {
-                let equations = self.equations(&placement, stage.step, stage.outlier);
+                let equations =
+                    self.equations(&placement, stage.step, stage.is_central, stage.outlier);
                 let step = equations.step(DAMPING);
-                let better = [1.0, 0.4, 0.15].into_iter().find_map(|part| {
+                let mut part_of_step = |part: f64| {
                     let next = self.stepped(&placement, &step.map(|by| by * part), stage.step);
-                    let gain = self.try_at(&next, stage.outlier).gain;
-                    (gain < best).then_some((next, gain))
-                });
+                    (next, self.try_at(&next, stage.outlier).gain)
+                };
+                let mut better = None;
+                for part in [1.0, 0.4, 0.15] {
+                    let (next, gain) = part_of_step(part);
+                    if gain < best {
+                        better = Some((next, gain));
+                        break;
+                    }
+                }
+                if let Some((_, gain)) = better {
+                    // Outliers weigh little, so steps are rather too short.
+                    let farther = part_of_step(2.5);
+                    if farther.1 < gain {
+                        better = Some(farther);
+                    }
+                }
                 let Some((next, gain)) = better else {
                     break;
                 };
@@ -133,45 +155,59 @@ impl Refinement<'_, '_> {
         (placement, best)
     }
 
-    /// The normal equations at a placement.
-    pub fn equations(&mut self, placement: &Placement, step: f32, outlier: f32) -> PoseEquations {
+    /// The normal equations at a placement, with derivatives over a step to both sides, or to one only.
+    pub fn equations(
+        &mut self,
+        placement: &Placement,
+        step: f32,
+        is_central: bool,
+        outlier: f32,
+    ) -> PoseEquations {
         let mut equations = PoseEquations::default();
-        let Some(window) = self.residual.window_of(&self.solids(placement)) else {
+        let solids = self.solids(placement);
+        let Some(window) = self.residual.window_of(&solids) else {
             return equations;
         };
-        let window = window.widened(3, self.residual.size());
+        let margin = (step * PIXELS_PER_UNIT) as u32 + 1;
+        let window = window.widened(margin, self.residual.size());
         let width = self.residual.seen().width;
-        let pixels = window.area();
-        let mut derivatives = vec![[0.0_f32; PARAMETERS]; 3 * pixels];
+        let here = drawn_in(self.residual.draw(&solids, &window), &window);
+        let mut derivatives = vec![[0.0_f32; PARAMETERS]; here.len()];
         for parameter in self.parameters(placement) {
-            for (side, factor) in [(step, 0.5 / step), (-step, -0.5 / step)] {
-                let solids = self.solids(&self.moved(placement, parameter, side));
+            let mut add = |side: f32, factor: f32| {
+                let solids = self.solids(&self.moved(placement, parameter, side * step));
                 let drawn = self.residual.draw(&solids, &window);
-                let mut own = derivatives.iter_mut();
-                for_pixels(&window, width, |i| {
-                    for part in &drawn.rgb[3 * i..3 * i + 3] {
-                        if let Some(derivative) = own.next() {
-                            derivative[parameter] += f32::from(*part) * factor;
-                        }
+                let (mut own, mut here) = (derivatives.iter_mut(), here.iter());
+                for row in rows(&window, width) {
+                    let parts = &drawn.rgb[3 * row.start..3 * row.end];
+                    for ((part, derivative), here) in parts.iter().zip(&mut own).zip(&mut here) {
+                        let change = f32::from(*part) - f32::from(*here);
+                        derivative[parameter] += change * factor;
                     }
-                });
+                }
+            };
+            if is_central {
+                add(1.0, 0.5 / step);
+                add(-1.0, -0.5 / step);
+            } else {
+                add(1.0, 1.0 / step);
             }
         }
-        let solids = self.solids(placement);
         let seen = self.residual.seen();
-        let drawn = self.residual.draw(&solids, &window);
-        let mut own = derivatives.chunks_exact(3);
-        for_pixels(&window, width, |i| {
-            let Some(own) = own.next() else { return };
-            let parts = |rgb: &[u8]| [0, 1, 2].map(|part| f32::from(rgb[3 * i + part]));
-            let (shown, seen) = (parts(&drawn.rgb), parts(&seen.rgb));
-            let differences = [0, 1, 2].map(|part| seen[part] - shown[part]);
-            let square: f32 = differences.iter().map(|it| it * it).sum();
-            let weight = outlier / (square + outlier);
-            for (derivatives, difference) in own.iter().zip(differences) {
-                equations.add(derivatives, difference, weight * weight);
+        let (mut own, mut here) = (derivatives.chunks_exact(3), here.chunks_exact(3));
+        for row in rows(&window, width) {
+            let seen = seen.rgb[3 * row.start..3 * row.end].chunks_exact(3);
+            for ((seen, here), derivatives) in seen.zip(&mut here).zip(&mut own) {
+                if derivatives.iter().all(|own| *own == [0.0; PARAMETERS]) {
+                    continue;
+                }
+                let weight = outlier / (square_of(seen, here) + outlier);
+                for (part, derivatives) in derivatives.iter().enumerate() {
+                    let difference = f32::from(seen[part]) - f32::from(here[part]);
+                    equations.add(derivatives, difference, weight * weight);
+                }
             }
-        });
+        }
         equations
     }
 
@@ -209,6 +245,18 @@ impl Refinement<'_, '_> {
         let most = 3.0 * size;
         self.changed(placement, &step.map(|by| (by as f32).clamp(-most, most)))
     }
+}
+
+/// About how many pixels show a unit.
+const PIXELS_PER_UNIT: f32 = 10.0;
+
+/// The colours in a window of a picture, row by row.
+fn drawn_in(drawn: &Picture, window: &PictureWindow) -> Vec<u8> {
+    let mut colors = Vec::with_capacity(3 * window.area());
+    for row in rows(window, drawn.width) {
+        colors.extend_from_slice(&drawn.rgb[3 * row.start..3 * row.end]);
+    }
+    colors
 }
 
 /// Motion along the ray, in units, that changes the picture about as much as a unit across it: distances are about ten times an object's size.

@@ -1,5 +1,7 @@
 //! The residual: how a picture differs from one that is drawn.
 
+use std::ops::Range;
+
 use bevy::math::Vec3;
 use tabletop_camera::{Camera, DrawnSolid, PictureLayers, PictureWindow, Scene};
 use tabletop_core::Picture;
@@ -75,23 +77,23 @@ impl<'p> Residual<'p> {
 
     /// Keeps these solids over the ground, within a window; what is tried is compared there.
     pub fn keep(&mut self, solids: &[DrawnSolid], window: &PictureWindow) {
+        KEEPS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.layers.keep(solids, window);
         self.window = window.intersection(&self.layers.whole());
         let drawn = self.layers.draw(&[], &self.window);
-        for_pixels(&self.window, self.seen.width, |i| {
-            self.kept[i] = square(self.seen, drawn, i);
-        });
+        for row in rows(&self.window, self.seen.width) {
+            let parts = 3 * row.start..3 * row.end;
+            let seen = self.seen.rgb[parts.clone()].chunks_exact(3);
+            let drawn = drawn.rgb[parts].chunks_exact(3);
+            for (kept, (seen, drawn)) in self.kept[row].iter_mut().zip(seen.zip(drawn)) {
+                *kept = square_of(seen, drawn);
+            }
+        }
     }
 
-    /// The squared difference of a pixel from what is kept.
-    pub fn square(&self, pixel: usize) -> f32 {
-        self.kept[pixel]
-    }
-
-    /// The picture of what is kept, valid in its window.
-    pub fn kept_picture(&mut self) -> &Picture {
-        let window = self.window.clone();
-        self.layers.draw(&[], &window)
+    /// The squared differences of pixels from what is kept, valid in its window.
+    pub fn squares(&self) -> &[f32] {
+        &self.kept
     }
 
     /// Tries solids, whose number is [`TRIED`].
@@ -101,44 +103,52 @@ impl<'p> Residual<'p> {
             return trial;
         };
         let window = window.intersection(&self.window);
+        TRIALS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let drawn = self.layers.draw(solids, &window);
-        for_pixels(&window, self.seen.width, |i| {
-            let own = loss(square(self.seen, drawn, i), outlier);
-            trial.gain += own - loss(self.kept[i], outlier);
-            if drawn.objects[i] == TRIED {
-                trial.pixels += 1;
-                trial.misfit += own;
+        for row in rows(&window, self.seen.width) {
+            let parts = 3 * row.start..3 * row.end;
+            let seen = self.seen.rgb[parts.clone()].chunks_exact(3);
+            let pixels = seen.zip(drawn.rgb[parts].chunks_exact(3));
+            let known = self.kept[row.clone()].iter().zip(&drawn.objects[row]);
+            for ((seen, drawn), (&kept, &object)) in pixels.zip(known) {
+                let own = loss(square_of(seen, drawn), outlier);
+                trial.gain += own - loss(kept, outlier);
+                if object == TRIED {
+                    trial.pixels += 1;
+                    trial.misfit += own;
+                }
             }
-        });
+        }
         trial
     }
 
     /// Draws solids over what is kept. Valid in the part of the window that is kept.
     pub fn draw(&mut self, solids: &[DrawnSolid], window: &PictureWindow) -> &Picture {
+        DRAWS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.layers.draw(solids, window)
     }
 }
 
 /// The indices of the pixels of a window, row by row.
-pub(crate) fn for_pixels(window: &PictureWindow, width: u32, mut see: impl FnMut(usize)) {
-    for row in window.rows.clone() {
+pub(crate) fn rows(
+    window: &PictureWindow,
+    width: u32,
+) -> impl Iterator<Item = Range<usize>> + use<> {
+    let columns = window.columns.clone();
+    window.rows.clone().map(move |row| {
         let first = row as usize * width as usize;
-        for column in window.columns.clone() {
-            see(first + column as usize);
-        }
-    }
+        first + columns.start as usize..first + columns.end as usize
+    })
 }
 
-/// The squared difference of a pixel of two pictures, summed over red, green and blue.
+/// The squared difference of two colours, summed over red, green and blue.
 #[inline]
-pub(crate) fn square(one: &Picture, other: &Picture, i: usize) -> f32 {
-    let [one, other] = [one, other].map(|picture| &picture.rgb[3 * i..3 * i + 3]);
-    let parts = one.iter().zip(other);
-    let square: i32 = parts
-        .map(|(&a, &b)| {
-            let difference = i32::from(a) - i32::from(b);
-            difference * difference
-        })
-        .sum();
-    square as f32
+pub(crate) fn square_of(one: &[u8], other: &[u8]) -> f32 {
+    let difference = |part: usize| i32::from(one[part]) - i32::from(other[part]);
+    let [red, green, blue] = [difference(0), difference(1), difference(2)];
+    (red * red + green * green + blue * blue) as f32
 }
+
+pub static TRIALS: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+pub static DRAWS: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+pub static KEEPS: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);

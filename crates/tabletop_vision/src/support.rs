@@ -56,19 +56,47 @@ pub(crate) fn pile_heights<'o>(
     const ALIKE: f32 = 0.02;
     const MOST: usize = 40;
     let mut heights = vec![0.0];
-    for object in objects {
-        let seats = object.seats();
-        let sums: Vec<_> = heights
-            .iter()
-            .flat_map(|below| seats.iter().map(move |seat| below + seat))
-            .collect();
-        for height in sums {
-            let is_new = heights.iter().all(|known| (known - height).abs() > ALIKE);
-            if is_new && height <= highest && heights.len() < MOST {
-                heights.push(height);
+    let mut add = |heights: &mut Vec<f32>, height: f32| {
+        let is_new = heights.iter().all(|known| (known - height).abs() > ALIKE);
+        if is_new && height <= highest && heights.len() < MOST {
+            heights.push(height);
+        }
+    };
+    let (fixed, movable): (Vec<_>, Vec<_>) = objects.into_iter().partition(|it| it.is_fixed());
+    // What is fixed stands on the table itself.
+    for seat in fixed.iter().flat_map(|object| object.seats()) {
+        add(&mut heights, seat);
+    }
+    for object in movable {
+        for below in heights.clone() {
+            for seat in object.seats() {
+                add(&mut heights, below + seat);
             }
         }
     }
     heights.sort_by(f32::total_cmp);
     heights
+}
+
+/// True if an object at a placement shares no more room with solids than estimates that are not exact may.
+pub(crate) fn has_room(
+    object: &KnownObject,
+    placement: &Placement,
+    others: &[PlacedSolid],
+) -> bool {
+    /// How deep solids may be in each other, in units.
+    const DEEP: f32 = 0.15;
+    let own = object.touched(placement);
+    own.iter().all(|solid| {
+        let within = |other: &&PlacedSolid| {
+            let between = solid.pose.location.distance(other.pose.location);
+            between < solid.radius() + other.radius()
+        };
+        others.iter().filter(within).all(|other| {
+            let gap = solid
+                .shrunk(DEEP / 2.0)
+                .away_from(&other.shrunk(DEEP / 2.0));
+            gap.length() > 0.0
+        })
+    })
 }

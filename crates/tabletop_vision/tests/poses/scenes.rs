@@ -166,7 +166,12 @@ impl TaskScene {
         Sample {
             looks: known
                 .iter()
-                .map(|one| known.iter().position(|other| one == other).unwrap())
+                .map(|one| {
+                    known
+                        .iter()
+                        .position(|other| one.turn_to(other).is_some())
+                        .unwrap()
+                })
                 .collect(),
             symmetries: known.iter().map(KnownObject::symmetry).collect(),
             poses: objects.iter().map(|object| object.pose).collect(),
@@ -355,6 +360,7 @@ impl Sample {
             is_free[j] = false;
             let turn = pose.rotation * self.poses[j].rotation.inverse();
             let yaw = 2.0 * turn.z.atan2(turn.w);
+            let yaw = yaw + self.known[j].turn_to(&self.known[i]).unwrap();
             let yaw = match self.symmetries[i] {
                 YawSymmetry::Any => 0.0,
                 YawSymmetry::Turns(turns) => {
