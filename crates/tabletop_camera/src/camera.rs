@@ -244,7 +244,8 @@ impl PictureWindow {
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         let common = |one: &Range<u32>, other: &Range<u32>| {
-            one.start.max(other.start)..one.end.min(other.end)
+            let start = one.start.max(other.start);
+            start..one.end.min(other.end).max(start)
         };
         Self {
             columns: common(&self.columns, &other.columns),

@@ -27,7 +27,8 @@ struct Watched {
 }
 
 impl Watcher {
-    /// A watcher of these objects, each of which stands as it does in its description, turned about the vertical by any angle.
+    /// A watcher of these objects, each of which stands as it does in its description, turned about the vertical by any angle. Its place in there only tells
+    /// which of several objects that look the same has which id.
     pub fn new(
         objects: Vec<ObjectSpec>,
         joints: Vec<JointSpec>,
@@ -49,8 +50,10 @@ impl Watcher {
         });
         let objects: Vec<_> = watched.collect();
         let known = objects.iter().map(|object| object.known.clone());
+        let mut eyes = Eyes::new(known.collect(), Camera::of_head(camera, &table), table);
+        eyes.remember(objects.iter().map(|object| Some(object.spec.pose)));
         Self {
-            eyes: Eyes::new(known.collect(), Camera::of_head(camera, &table), table),
+            eyes,
             table,
             objects,
             joints,

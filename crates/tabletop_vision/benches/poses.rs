@@ -13,6 +13,9 @@ use std::time::Instant;
 use scenes::{Difficulty, TASKS};
 use tabletop_vision::{Eyes, KnownScenery};
 
+/// Number of looks at each picture.
+const REPEATED: usize = 3;
+
 const EASY: Difficulty = Difficulty {
     is_end: false,
     noise: 0.0,
@@ -90,14 +93,15 @@ fn main() {
             for seed in 0..count {
                 let sample = task.sample(own, seed);
                 let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
-                let start = Instant::now();
-                let seen = eyes.look(&sample.picture, &KnownScenery::default());
-                if is_verbose {
-                    for pose in &sample.poses {
-                        eprintln!("    truth {} {}", pose.location, pose.degrees().z);
-                    }
-                }
-                times.push(start.elapsed().as_secs_f64() * 1e3);
+                // The least of some times, since other programs run meanwhile.
+                let mut looks = (0..REPEATED).map(|_| {
+                    eyes.forget();
+                    let start = Instant::now();
+                    let seen = eyes.look(&sample.picture, &KnownScenery::default());
+                    (start.elapsed().as_secs_f64() * 1e3, seen)
+                });
+                let (first, seen) = looks.next().unwrap();
+                times.push(looks.fold(first, |least, (time, _)| least.min(time)));
                 for error in sample.errors(&seen) {
                     if is_verbose && (error.length > 0.02 || error.degrees > 1.0) {
                         println!("  seed {seed}: {error:?}");

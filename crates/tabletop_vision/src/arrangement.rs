@@ -6,7 +6,7 @@ use tabletop_camera::{DrawnSolid, PictureWindow};
 use crate::{
     guess::{Candidate, GOOD_SCORE, Guess},
     known::{KnownObject, Placement},
-    refine::{FINE, Refinement, Stage},
+    refine::{FINE, Refinement, Stage, TRACKING},
     residual::{OUTLIER, Residual, Trial, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
     support,
@@ -16,8 +16,11 @@ use crate::{
 const LEAST_SCORE: f32 = 0.12;
 /// Squared difference of a pixel above which it is not explained, without noise.
 const UNEXPLAINED: f32 = 600.0;
-/// The loss that a support may add, as a part of what the object explains: else it is in the air.
+/// The loss that a support may add, as a part of what the object explains, where it was not known before, and where it was.
 const SUPPORTED: f32 = 0.05;
+/// The same, when everything else is about in its place.
+const FINALLY_SUPPORTED: f32 = 0.3;
+const STILL_SUPPORTED: f32 = 0.003;
 /// The loss of a pixel, on average, above which an object is explained badly, without noise.
 const BAD: f32 = 150.0;
 /// The largest height, in units, on which objects that nothing is known about are looked for.
@@ -41,6 +44,8 @@ pub(crate) struct Arrangement<'a, 'p> {
     squares: Vec<f32>,
     /// Variance of a part of a pixel.
     pub noise: f32,
+    /// The loss that a support may add, as a part of what the object explains: else it is in the air.
+    allowance: f32,
 }
 
 /// The placements, to come back to.
@@ -64,6 +69,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             colors: colors.collect(),
             squares: vec![0.0; residual.seen().depth.len()],
             noise: 0.0,
+            allowance: SUPPORTED,
             residual,
         };
         arrangement.compare(&arrangement.residual.whole());
@@ -170,6 +176,30 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         })
     }
 
+    /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere.
+    pub fn follow(&mut self, before: &[Option<Placement>]) {
+        self.allowance = STILL_SUPPORTED;
+        for (i, placement) in before.iter().enumerate() {
+            self.place(i, *placement);
+        }
+        let good = self.good();
+        for i in 0..self.objects.len() {
+            let fit = self.fit(i);
+            if fit.misfit > good * fit.pixels as f32 {
+                self.settle(i, &TRACKING, true);
+            }
+        }
+        let lost: Vec<_> = (0..self.objects.len())
+            .filter(|&i| self.is_bad(i))
+            .collect();
+        for &i in &lost {
+            self.place(i, None);
+        }
+        if self.placements.contains(&None) {
+            self.arrange(&mut || 1.0);
+        }
+    }
+
     /// Finds all objects without a placement, and settles all.
     pub fn arrange(&mut self, chance: &mut impl FnMut() -> f32) {
         self.find_all(chance);
@@ -179,13 +209,22 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             self.find_all(chance);
             self.settle_all(1, false);
         }
-        self.settle_all(2, true);
+        if self.allowance == SUPPORTED {
+            self.allowance = FINALLY_SUPPORTED;
+            self.settle_all(2, true);
+            self.allowance = SUPPORTED;
+        } else {
+            self.settle_all(2, true);
+        }
     }
 
     /// Finds all objects without a placement, the one that explains most of its pixels first.
     fn find_all(&mut self, chance: &mut impl FnMut() -> f32) {
         let mut candidates: Vec<Option<Option<Candidate>>> = vec![None; self.objects.len()];
         while let Some((object, placement)) = self.next_found(&mut candidates, chance) {
+            if std::env::var("DBG").is_ok() {
+                eprintln!("place {object} {:?} {}", placement.location, placement.yaw);
+            }
             self.place(object, Some(placement));
             let window = self.windows[object].clone().unwrap_or_default();
             let wide = window.widened(4, self.residual.size());
@@ -232,6 +271,12 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             if candidate.score > GOOD_SCORE {
                 return Some((i, candidate.placement));
             }
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "  cand {i} {:?} {} {}",
+                    candidate.placement.location, candidate.placement.yaw, candidate.score
+                );
+            }
             let score = candidate.score * chance();
             if score > LEAST_SCORE && best.is_none_or(|best| score > best.2) {
                 best = Some((i, candidate.placement, score));
@@ -264,8 +309,21 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         });
         let taken = taken.flatten();
         let known = &self.objects[object];
+        let own_seats = known.seats();
+        let neighbours = others.clone().filter_map(|i| {
+            let placement = self.placements[i]?;
+            let foot = placement.location.z + self.objects[i].stance(&placement).low;
+            let above = self.objects[i].seats().into_iter().map(|seat| foot + seat);
+            let below = own_seats.iter().map(|seat| foot - seat);
+            let heights = above.chain(below).filter(|height| *height > -0.05);
+            Some((placement, heights.map(|height| height.max(0.0)).collect()))
+        });
         Some(Guess {
             others: placed.collect(),
+            neighbours: match known.is_fixed() {
+                true => Vec::new(),
+                false => neighbours.collect(),
+            },
             taken: taken.collect(),
             heights: match known.is_fixed() {
                 true => vec![0.0],
@@ -288,7 +346,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         self.keep_others(object, &window.widened(6, self.residual.size()));
         let known = &self.objects[object];
         let eye = self.residual.eye();
-        let good = GOOD + 3.3 * self.noise;
+        let good = self.good();
         let mut refinement = Refinement {
             residual: &mut self.residual,
             object: known,
@@ -306,7 +364,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         if !known.is_fixed() && (!stands || trial.misfit > good * trial.pixels as f32) {
             let here = settled;
             refinement.is_free = true;
-            let (free, free_trial) = refinement.refined(here, stages);
+            let (free, free_trial) = refinement.refined(here, &FINE);
             refinement.is_free = false;
             let mut heights = support::heights(known, &free, others);
             heights.sort_by(|a, b| {
@@ -315,15 +373,16 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             });
             let near = heights.into_iter().take(3);
             let standing =
-                near.map(|height| refinement.refined(free.at_height(height, eye), stages));
+                near.map(|height| refinement.refined(free.at_height(height, eye), &FINE));
             let best = standing.min_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
             // What it stands on may not be in its place yet.
-            let (hovering, gain) =
-                match !is_last && trial.gain < free_trial.gain + SUPPORTED * trial.gain.abs() {
-                    true => (here, trial.gain),
-                    false => (free, free_trial.gain),
-                };
-            let allowance = SUPPORTED * gain.abs() + 20.0 * self.noise.max(1.0);
+            let (hovering, gain) = match !is_last
+                && trial.gain < free_trial.gain + self.allowance * trial.gain.abs()
+            {
+                true => (here, trial.gain),
+                false => (free, free_trial.gain),
+            };
+            let allowance = self.allowance * gain.abs() + 20.0 * self.noise.max(1.0);
             settled = match best {
                 Some((placement, standing)) if standing.gain <= gain + allowance => placement,
                 _ => {
@@ -402,6 +461,11 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         fit.pixels == 0 && open > 8
             || fit.misfit > self.bad() * fit.pixels as f32
             || open as f32 > 8.0 + 0.15 * fit.pixels as f32
+    }
+
+    /// The loss of a pixel, on average, below which an object is explained well.
+    fn good(&self) -> f32 {
+        GOOD + 3.3 * self.noise
     }
 
     /// The loss of a pixel, on average, above which an object is explained badly.

@@ -142,11 +142,23 @@ impl Eyes {
         let residual = Residual::new(picture, &ground, self.camera);
         let mut arrangement = Arrangement::empty(&self.objects, residual);
         rep("empty");
-        arrangement.arrange(&mut || 1.0);
+        let known = self.objects.iter().zip(&self.poses);
+        let before: Vec<_> = known
+            .map(|(object, pose)| pose.map(|pose| object.placement(pose)))
+            .collect();
+        if before.iter().all(Option::is_none) {
+            arrangement.arrange(&mut || 1.0);
+        } else {
+            arrangement.follow(&before);
+        }
         rep("settled");
         arrangement.reconsider();
         rep("reconsidered");
-        let percepts = (0..self.objects.len()).map(|i| percept(&mut arrangement, i));
+        let percepts = (0..self.objects.len()).map(|i| {
+            let seen = percept(&mut arrangement, i);
+            let pose = seen.pose.or(self.poses[i]);
+            ObjectPercept { pose, ..seen }
+        });
         let mut objects: Vec<_> = percepts.collect();
         keep_identities(&self.objects, &self.poses, &mut objects);
         let least = arrangement.unexplained();
@@ -156,7 +168,7 @@ impl Eyes {
         let noise = arrangement.noise.sqrt();
         rep("percept");
         for (own, seen) in self.poses.iter_mut().zip(&objects) {
-            *own = seen.pose.or(*own);
+            *own = seen.pose;
         }
         Percept {
             objects,

@@ -2,10 +2,9 @@
 
 use bevy::math::Vec2;
 use tabletop_camera::{DrawnSolid, PictureWindow};
-use tabletop_geometry::PlacedSolid;
 
 use crate::{
-    known::{KnownObject, Placement},
+    known::{KnownObject, Placement, StandingSolid},
     refine::{COARSE, Refinement, Stage},
     residual::{OUTLIER, Residual, Trial},
     segment::Blob,
@@ -46,8 +45,10 @@ pub(crate) struct Guess<'g, 'a, 'p> {
     pub blobs: Vec<(Blob, f32)>,
     /// The other objects' solids, and the windows in which they may be seen.
     pub others: Vec<(PictureWindow, Vec<DrawnSolid>)>,
+    /// Where other objects are, and the heights of this one on and below each: objects often stand straight on each other.
+    pub neighbours: Vec<(Placement, Vec<f32>)>,
     /// What other objects take up.
-    pub taken: Vec<PlacedSolid>,
+    pub taken: Vec<StandingSolid>,
     /// The heights, in units, of what it may stand on, from 0 on.
     pub heights: Vec<f32>,
 }
@@ -83,7 +84,7 @@ impl<'p> Guess<'_, '_, 'p> {
         let mut tried = Vec::new();
         for (i, seed) in seeds.iter().enumerate() {
             if self.keep_about(seed).is_some() {
-                let own = self.tried(seed).into_iter();
+                let own = [self.tried(seed), self.piled(seed)].into_iter().flatten();
                 tried.extend(own.map(|(placement, trial)| (i, placement, seed.score(&trial))));
             }
         }
@@ -272,6 +273,30 @@ impl<'p> Guess<'_, '_, 'p> {
                     tried.push((placement, self.trial(&placement)));
                 }
                 height += HEIGHT_STEP;
+            }
+        }
+        tried
+    }
+
+    /// Placements straight above or below other objects that are seen about a seed.
+    fn piled(&mut self, seed: &Seed) -> Vec<(Placement, Trial)> {
+        /// Largest distance of the other object, in radii of this one.
+        const NEAR: f32 = 3.0;
+        let own = &self.object.stances()[0];
+        let (low, radius, symmetry) = (own.low, own.radius, own.symmetry);
+        let mut tried = Vec::new();
+        for (neighbour, heights) in self.neighbours.clone() {
+            for height in heights {
+                let placement = Placement {
+                    location: neighbour.location.truncate().extend(height - low),
+                    yaw: symmetry.reduced(neighbour.yaw),
+                    stance: 0,
+                };
+                let about = self.at(seed.pixel, 0, height, 0.0);
+                let is_near = about.location.distance(placement.location) < NEAR * radius;
+                if is_near && has_room(self.object, &placement, &self.taken) {
+                    tried.push((placement, self.trial(&placement)));
+                }
             }
         }
         tried

@@ -44,11 +44,31 @@ pub(crate) struct Stance {
     rotation: Quat,
     /// Its solids after this rotation, about the object's origin.
     drawn: Vec<Primitive>,
-    touched: Vec<Primitive>,
+    touched: Vec<TouchedSolid>,
     pub symmetry: YawSymmetry,
     /// Lowest and highest Z relative to the origin, and the largest distance from the vertical through it.
     pub low: f32,
     pub high: f32,
+    pub radius: f32,
+}
+
+/// A convex solid of a stance that others touch.
+#[derive(Clone, Debug, PartialEq)]
+struct TouchedSolid {
+    solid: Primitive,
+    center: Vec3,
+    heights: [f32; 2],
+    radius: f32,
+}
+
+/// A convex solid of an object in its place.
+#[derive(Clone, Debug)]
+pub(crate) struct StandingSolid {
+    pub solid: PlacedSolid,
+    /// Its lowest and highest Z.
+    pub heights: [f32; 2],
+    /// The centre of a ball that encloses it, and its radius.
+    pub center: Vec3,
     pub radius: f32,
 }
 
@@ -152,7 +172,7 @@ impl KnownObject {
         let turns = quarters.filter(|_| is_as_large);
         turns
             .into_iter()
-            .find(|&turn| fills_alike(&theirs.touched, &own.touched, turn_about(Vec3::Z, turn)))
+            .find(|&turn| fills_alike(&theirs.solids(), &own.solids(), turn_about(Vec3::Z, turn)))
     }
 
     /// The heights above its lowest point at which other objects may stand on it or in it, in its first stance.
@@ -160,7 +180,7 @@ impl KnownObject {
         let stance = &self.stances[0];
         let mut seats: Vec<f32> = Vec::new();
         for solid in &stance.touched {
-            let seat = PlacedSolid::of(solid, Pose::IDENTITY).heights()[1] - stance.low;
+            let seat = solid.heights[1] - stance.low;
             if seats.iter().all(|known| (known - seat).abs() > SAME) {
                 seats.push(seat);
             }
@@ -207,10 +227,16 @@ impl KnownObject {
     }
 
     /// The convex solids that others touch, at a placement.
-    pub(crate) fn touched(&self, placement: &Placement) -> Vec<PlacedSolid> {
+    pub(crate) fn touched(&self, placement: &Placement) -> Vec<StandingSolid> {
         let body = placement.upright();
         let solids = self.stance(placement).touched.iter();
-        solids.map(|solid| PlacedSolid::of(solid, body)).collect()
+        let standing = solids.map(|touched| StandingSolid {
+            solid: PlacedSolid::of(&touched.solid, body),
+            center: body * touched.center,
+            heights: touched.heights.map(|z| z + placement.location.z),
+            radius: touched.radius,
+        });
+        standing.collect()
     }
 }
 
@@ -263,7 +289,24 @@ impl YawSymmetry {
     }
 }
 
+impl TouchedSolid {
+    fn of(solid: Primitive) -> Self {
+        let Bounds { low, high } = Bounds::of_primitive(&solid, Pose::IDENTITY);
+        Self {
+            center: low.midpoint(high),
+            heights: [low.z, high.z],
+            radius: low.distance(high) / 2.0,
+            solid,
+        }
+    }
+}
+
 impl Stance {
+    /// The convex solids that others touch.
+    fn solids(&self) -> Vec<Primitive> {
+        self.touched.iter().map(|it| it.solid.clone()).collect()
+    }
+
     fn of(drawn: &[Primitive], touched: &[Primitive], rotation: Quat) -> Self {
         let turn = Pose::new(Vec3::ZERO, rotation);
         let turned = |solids: &[Primitive]| -> Vec<Primitive> {
@@ -289,7 +332,7 @@ impl Stance {
             symmetry: symmetry(&drawn, &touched),
             radius: reach.fold(0.05, f32::max),
             drawn,
-            touched,
+            touched: touched.into_iter().map(TouchedSolid::of).collect(),
             low,
             high,
         }
@@ -311,8 +354,8 @@ fn symmetry(drawn: &[Primitive], touched: &[Primitive]) -> YawSymmetry {
 /// True if solids fill the same room, with the same colours, as others do after a turn.
 fn fills_alike(one: &[Primitive], other: &[Primitive], turn: Quat) -> bool {
     /// Points along each axis, and the part of all that may differ: those next to a surface, by rounding.
-    const POINTS: i32 = 24;
-    const DIFFERING: f32 = 0.002;
+    const POINTS: i32 = 16;
+    const DIFFERING: f32 = 0.004;
     let bounds = one
         .iter()
         .map(|solid| Bounds::of_primitive(solid, Pose::IDENTITY));

@@ -62,6 +62,9 @@ pub(crate) const FINE: [Stage; 2] = [
     },
 ];
 
+/// From where the object was in the last picture.
+pub(crate) const TRACKING: [Stage; 4] = [COARSE[0], COARSE[1], FINE[0], FINE[1]];
+
 /// An object that is moved over what is kept.
 pub(crate) struct Refinement<'a, 'p> {
     pub residual: &'a mut Residual<'p>,

@@ -1,8 +1,6 @@
 //! Supports: the heights at which an object may stand.
 
-use tabletop_geometry::PlacedSolid;
-
-use crate::known::{KnownObject, Placement};
+use crate::known::{KnownObject, Placement, StandingSolid};
 
 /// Largest gap, seen from above and in units, between solids that may stand on each other: estimates are not exact.
 const BESIDE: f32 = 0.06;
@@ -27,13 +25,12 @@ pub(crate) fn heights<'o>(
             continue;
         }
         for below in other.touched(at) {
-            let top = below.heights()[1];
             for solid in &own {
-                let height = top - (solid.heights()[0] - placement.location.z);
+                let height = below.heights[1] - (solid.heights[0] - placement.location.z);
                 let is_new = heights
                     .iter()
                     .all(|known| (known - height).abs() > SAME_HEIGHT);
-                if is_new && is_above(solid, &below) {
+                if is_new && gap_from_above(solid, &below) < BESIDE {
                     heights.push(height);
                 }
             }
@@ -43,8 +40,14 @@ pub(crate) fn heights<'o>(
     heights
 }
 
-fn is_above(solid: &PlacedSolid, below: &PlacedSolid) -> bool {
-    solid.gap_from_above(below) < BESIDE
+/// The gap between two solids, seen from above, or less if it is large.
+fn gap_from_above(one: &StandingSolid, other: &StandingSolid) -> f32 {
+    let [a, b] = [one, other].map(|it| it.center.truncate());
+    let least = a.distance(b) - one.radius - other.radius;
+    match least > BESIDE {
+        true => least,
+        false => one.solid.gap_from_above(&other.solid),
+    }
 }
 
 /// The heights, from the lowest on and up to a largest one, at which piles of these objects may end on which another one stands.
@@ -56,7 +59,7 @@ pub(crate) fn pile_heights<'o>(
     const ALIKE: f32 = 0.02;
     const MOST: usize = 40;
     let mut heights = vec![0.0];
-    let mut add = |heights: &mut Vec<f32>, height: f32| {
+    let add = |heights: &mut Vec<f32>, height: f32| {
         let is_new = heights.iter().all(|known| (known - height).abs() > ALIKE);
         if is_new && height <= highest && heights.len() < MOST {
             heights.push(height);
@@ -82,21 +85,21 @@ pub(crate) fn pile_heights<'o>(
 pub(crate) fn has_room(
     object: &KnownObject,
     placement: &Placement,
-    others: &[PlacedSolid],
+    others: &[StandingSolid],
 ) -> bool {
     /// How deep solids may be in each other, in units.
     const DEEP: f32 = 0.15;
     let own = object.touched(placement);
     own.iter().all(|solid| {
-        let within = |other: &&PlacedSolid| {
-            let between = solid.pose.location.distance(other.pose.location);
-            between < solid.radius() + other.radius()
+        let is_beside = |other: &StandingSolid| {
+            let common =
+                solid.heights[1].min(other.heights[1]) - solid.heights[0].max(other.heights[0]);
+            let [a, b] = [solid, other].map(|it| it.center.truncate());
+            let way = (a - b).normalize_or_zero().extend(0.0);
+            common < DEEP
+                || a.distance(b) > solid.radius + other.radius
+                || solid.solid.moved(way * DEEP).gap_from_above(&other.solid) > 0.0
         };
-        others.iter().filter(within).all(|other| {
-            let gap = solid
-                .shrunk(DEEP / 2.0)
-                .away_from(&other.shrunk(DEEP / 2.0));
-            gap.length() > 0.0
-        })
+        others.iter().all(is_beside)
     })
 }

@@ -105,6 +105,7 @@ pub struct Sample {
     pub table: Table,
     pub camera: Camera,
     pub picture: Picture,
+    shapes: Vec<Shape>,
 }
 
 impl TaskScene {
@@ -179,6 +180,7 @@ impl TaskScene {
             table,
             camera,
             picture,
+            shapes: objects.iter().map(|object| object.shape.clone()).collect(),
         }
     }
 
@@ -333,6 +335,26 @@ pub struct PoseError {
 }
 
 impl Sample {
+    /// A picture of the known objects elsewhere.
+    #[allow(dead_code, reason = "the bench has no use for it")]
+    pub fn with_poses(&self, poses: &[Pose]) -> Picture {
+        let mut scene = Scene {
+            solids: vec![DrawnSolid::of_table(&self.table, 1)],
+            ..Scene::default()
+        };
+        for ((shape, pose), number) in self.shapes.iter().zip(poses).zip(2..) {
+            let solids = shape.drawn();
+            scene.solids.extend(
+                solids
+                    .iter()
+                    .map(|solid| DrawnSolid::of(*pose, solid, number)),
+            );
+        }
+        let mut picture = Picture::default();
+        Rasterizer::alone().draw(&scene, &self.camera, &mut picture);
+        picture
+    }
+
     /// The errors of estimated poses; of objects that look the same, each is compared with the nearest one.
     pub fn errors(&self, seen: &tabletop_vision::Percept) -> Vec<PoseError> {
         let mut is_free = vec![true; self.poses.len()];
