@@ -15,7 +15,8 @@ pub struct Watcher {
     objects: Vec<Watched>,
     joints: Vec<JointSpec>,
     eyes: Eyes,
-    last: SimTick,
+    /// The tick of the last picture.
+    last: Option<SimTick>,
 }
 
 /// An object that is watched.
@@ -50,21 +51,23 @@ impl Watcher {
         });
         let objects: Vec<_> = watched.collect();
         let known = objects.iter().map(|object| object.known.clone());
-        let mut eyes = Eyes::new(known.collect(), Camera::of_head(camera, &table), table);
-        eyes.remember(objects.iter().map(|object| Some(object.spec.pose)));
         Self {
-            eyes,
+            eyes: Eyes::new(known.collect(), Camera::of_head(camera, &table), table),
             table,
             objects,
             joints,
-            last: SimTick(0),
+            last: None,
         }
     }
 
     /// Watches the next picture, of this tick of the demonstration. Ticks must ascend.
     pub fn watch(&mut self, tick: SimTick, picture: &Picture) {
-        self.last = tick;
-        let percept = self.eyes.look(picture, &KnownScenery::default());
+        let mut percept = self.eyes.look(picture, &KnownScenery::default());
+        if self.last.replace(tick).is_none() {
+            let places = self.objects.iter().map(|object| Some(object.spec.pose));
+            let places: Vec<_> = places.collect();
+            self.eyes.name_by_place(&places, &mut percept);
+        }
         for (object, seen) in self.objects.iter_mut().zip(percept.objects) {
             if let ObjectPercept {
                 pose: Some(pose),
@@ -89,7 +92,12 @@ impl Watcher {
             object.spec.pose = object.track.at(SimTick(0))?;
             Some((object.spec, object.track))
         });
-        Demonstration::of_motions(self.table, objects, self.joints, self.last)
+        Demonstration::of_motions(
+            self.table,
+            objects,
+            self.joints,
+            self.last.unwrap_or_default(),
+        )
     }
 }
 

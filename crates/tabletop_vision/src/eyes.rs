@@ -17,7 +17,7 @@ use crate::{
 /// Eyes that know some objects, and remember where they were in the last picture.
 #[derive(Clone, Debug)]
 pub struct Eyes {
-    objects: Vec<KnownObject>,
+    pub(crate) objects: Vec<KnownObject>,
     camera: Camera,
     table: Table,
     poses: Vec<Option<Pose>>,

@@ -2,7 +2,24 @@
 
 use tabletop_geometry::Pose;
 
-use crate::{eyes::ObjectPercept, known::KnownObject};
+use crate::{
+    eyes::{Eyes, ObjectPercept, Percept},
+    known::KnownObject,
+};
+
+impl Eyes {
+    /// Exchanges what was last seen of objects that look the same, so that each is as near as possible to one of these places.
+    pub fn name_by_place(&mut self, places: &[Option<Pose>], percept: &mut Percept) {
+        keep_identities(&self.objects, places, &mut percept.objects);
+        self.remember(
+            percept
+                .objects
+                .iter()
+                .map(|seen| seen.pose)
+                .collect::<Vec<_>>(),
+        );
+    }
+}
 
 /// Exchanges what is seen of objects that look the same, so that each is as near as possible to where it was.
 pub(crate) fn keep_identities(
