@@ -1,0 +1,308 @@
+//! rosbridge, protocol 2: JSON over a WebSocket. The same for ROS 1, ROS 2 and simulators.
+
+mod fragments;
+
+use std::{
+    collections::{BTreeSet, VecDeque},
+    net::TcpStream,
+    time::Duration,
+};
+
+use fragments::Fragments;
+use serde_json::{Value as Json, json};
+use tungstenite::{
+    Error, HandshakeError, Message, WebSocket, client::client_with_config,
+    protocol::WebSocketConfig,
+};
+
+use crate::{
+    address::authority,
+    clock::WallClock,
+    connection::{connect_within, is_timeout},
+    transport::{Listener, Received, ServiceCall, TopicType, Transport, TransportError},
+};
+
+/// How long a connection may take, and its handshake.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// How long a message may wait to be written before the connection counts as stuck.
+const WRITE_PATIENCE: Duration = Duration::from_millis(50);
+
+/// The most bytes of a message: a picture of 1280x800 in base64 has 5.5 MB.
+const MOST_BYTES: usize = 8 << 20;
+
+/// The shortest wait for bytes: a system's clock knows no shorter ones.
+const SHORTEST_WAIT: Duration = Duration::from_millis(1);
+
+/// The most messages that are kept while an answer is waited for.
+const MOST_WAITING: usize = 1000;
+
+/// A connection to a rosbridge server.
+pub struct Rosbridge {
+    socket: WebSocket<TcpStream>,
+    address: String,
+    clock: WallClock,
+    fragments: Fragments,
+    advertised: BTreeSet<String>,
+    /// Messages that came while an answer was waited for.
+    waiting: VecDeque<Received>,
+    calls: u64,
+    nonsense: u64,
+}
+
+/// What a server has sent.
+enum Incoming {
+    Message(Received),
+    Answer(Json),
+    Other,
+}
+
+impl Rosbridge {
+    /// Connects to a server.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn connect(host: &str, port: u16, clock: WallClock) -> Result<Self, TransportError> {
+        let address = authority(host, port);
+        let stream = connect_within(host, port, PATIENCE)?;
+        let unreachable = |source| TransportError::Unreachable {
+            address: address.clone(),
+            source,
+        };
+        stream
+            .set_read_timeout(Some(PATIENCE))
+            .map_err(unreachable)?;
+        stream
+            .set_write_timeout(Some(WRITE_PATIENCE))
+            .map_err(unreachable)?;
+        let config = WebSocketConfig::default()
+            .max_message_size(Some(MOST_BYTES))
+            .max_frame_size(Some(MOST_BYTES))
+            .max_write_buffer_size(MOST_BYTES);
+        let url = format!("ws://{address}/");
+        let (socket, _) =
+            client_with_config(url, stream, Some(config)).map_err(|error| match error {
+                HandshakeError::Interrupted(_) => TransportError::NoReply {
+                    asked: address.clone(),
+                    patience: PATIENCE,
+                },
+                HandshakeError::Failure(error) => TransportError::Foreign {
+                    address: address.clone(),
+                    expected: "rosbridge server",
+                    fault: error.to_string(),
+                },
+            })?;
+        Ok(Self {
+            socket,
+            address,
+            clock,
+            fragments: Fragments::default(),
+            advertised: BTreeSet::new(),
+            waiting: VecDeque::new(),
+            calls: 0,
+            nonsense: 0,
+        })
+    }
+
+    /// Asks for the messages of a topic, no more often than once in a time. Pictures are asked for on a connection of their own, since a server sends
+    /// everything of a connection in turn.
+    ///
+    /// # Errors
+    /// As [`Listener::subscribe`].
+    pub fn subscribe_at_most_every(
+        &mut self,
+        topic: &TopicType,
+        period: Duration,
+    ) -> Result<(), TransportError> {
+        self.send(&json!({
+            "op": "subscribe",
+            "topic": topic.topic,
+            "type": topic.message,
+            "queue_length": 1,
+            "throttle_rate": u64::try_from(period.as_millis()).unwrap_or(u64::MAX),
+        }))
+    }
+
+    fn send(&mut self, message: &Json) -> Result<(), TransportError> {
+        let sent = self.socket.send(Message::text(message.to_string()));
+        sent.map_err(|error| match is_stuck(&error) {
+            true => TransportError::Stuck(self.address.clone()),
+            false => lost(&error),
+        })
+    }
+
+    /// The next thing that the server sends until the deadline.
+    fn read(&mut self, deadline: Duration) -> Result<Option<Incoming>, TransportError> {
+        let wait = self.clock.until(deadline);
+        if wait.is_zero() {
+            return Ok(None);
+        }
+        let wait = Some(wait.max(SHORTEST_WAIT));
+        let stream = self.socket.get_ref();
+        stream
+            .set_read_timeout(wait)
+            .map_err(|error| lost(&Error::Io(error)))?;
+        match self.socket.read() {
+            Ok(Message::Text(text)) => Ok(Some(self.understand(text.as_str()))),
+            Ok(Message::Close(_)) => Err(TransportError::Lost("the server has closed it".into())),
+            Ok(Message::Ping(_) | Message::Pong(_)) => Ok(Some(Incoming::Other)),
+            Ok(Message::Binary(_) | Message::Frame(_)) => {
+                self.nonsense += 1;
+                Ok(Some(Incoming::Other))
+            }
+            Err(Error::Io(error)) if is_timeout(&error) => Ok(None),
+            Err(error) => Err(lost(&error)),
+        }
+    }
+
+    fn understand(&mut self, text: &str) -> Incoming {
+        let Ok(mut json) = serde_json::from_str::<Json>(text) else {
+            self.nonsense += 1;
+            return Incoming::Other;
+        };
+        match json.get("op").and_then(Json::as_str) {
+            Some("publish") => {
+                let message = json.get_mut("msg").map(Json::take);
+                let topic = json.get("topic").and_then(Json::as_str);
+                if let (Some(topic), Some(message)) = (topic, message) {
+                    return Incoming::Message(Received {
+                        topic: topic.to_owned(),
+                        message,
+                        at: self.clock.now(),
+                    });
+                }
+                self.nonsense += 1;
+            }
+            // A message cut to pieces is none that is cut to pieces itself.
+            Some("fragment") => match self.fragments.add(&json) {
+                Ok(Some(whole)) if !whole.contains("\"fragment\"") => {
+                    return self.understand(&whole);
+                }
+                Ok(None) => {}
+                Ok(Some(_)) | Err(()) => self.nonsense += 1,
+            },
+            Some("service_response") => return Incoming::Answer(json),
+            Some("status") => {}
+            Some(_) | None => self.nonsense += 1,
+        }
+        Incoming::Other
+    }
+}
+
+impl Listener for Rosbridge {
+    fn subscribe(&mut self, topic: &TopicType) -> Result<(), TransportError> {
+        self.subscribe_at_most_every(topic, Duration::ZERO)
+    }
+
+    fn parameter(
+        &mut self,
+        name: &str,
+        patience: Duration,
+    ) -> Result<Option<Json>, TransportError> {
+        let call = ServiceCall {
+            service: "/rosapi/get_param".into(),
+            service_type: "rosapi/GetParam".into(),
+            request: json!({"name": name}),
+        };
+        let answer = self.call(&call, patience)?;
+        let value = answer
+            .get("value")
+            .and_then(Json::as_str)
+            .unwrap_or_default();
+        let value = serde_json::from_str(value).unwrap_or(Json::Null);
+        Ok((!value.is_null()).then_some(value))
+    }
+
+    fn poll(&mut self, deadline: Duration) -> Result<Option<Received>, TransportError> {
+        if let Some(received) = self.waiting.pop_front() {
+            return Ok(Some(received));
+        }
+        loop {
+            match self.read(deadline)? {
+                Some(Incoming::Message(received)) => return Ok(Some(received)),
+                Some(Incoming::Answer(_) | Incoming::Other) => {}
+                None if self.clock.until(deadline).is_zero() => return Ok(None),
+                None => {}
+            }
+        }
+    }
+
+    fn nonsense(&self) -> u64 {
+        self.nonsense
+    }
+}
+
+impl Transport for Rosbridge {
+    fn advertise(&mut self, topic: &TopicType, latched: bool) -> Result<(), TransportError> {
+        self.send(&json!({
+            "op": "advertise",
+            "topic": topic.topic,
+            "type": topic.message,
+            "latch": latched,
+            "queue_size": 1,
+        }))?;
+        self.advertised.insert(topic.topic.clone());
+        Ok(())
+    }
+
+    fn publish(&mut self, topic: &str, message: &Json) -> Result<(), TransportError> {
+        if !self.advertised.contains(topic) {
+            return Err(TransportError::Unfit {
+                topic: topic.to_owned(),
+                fault: "it was not advertised".into(),
+            });
+        }
+        self.send(&json!({"op": "publish", "topic": topic, "msg": message}))
+    }
+
+    fn call(&mut self, call: &ServiceCall, patience: Duration) -> Result<Json, TransportError> {
+        self.calls += 1;
+        let id = format!("call:{}", self.calls);
+        self.send(&json!({
+            "op": "call_service",
+            "id": id,
+            "service": call.service,
+            "type": call.service_type,
+            "args": call.request,
+        }))?;
+        let deadline = self.clock.now() + patience;
+        while !self.clock.until(deadline).is_zero() {
+            match self.read(deadline)? {
+                Some(Incoming::Message(received)) => {
+                    self.waiting.push_back(received);
+                    if self.waiting.len() > MOST_WAITING {
+                        self.waiting.pop_front();
+                    }
+                }
+                Some(Incoming::Answer(answer))
+                    if answer.get("id").and_then(Json::as_str) == Some(&id) =>
+                {
+                    let values = answer.get("values").cloned().unwrap_or(Json::Null);
+                    return match answer.get("result").and_then(Json::as_bool) {
+                        Some(false) => Err(TransportError::Declined {
+                            asked: call.service.clone(),
+                            reason: values
+                                .as_str()
+                                .map_or_else(|| values.to_string(), str::to_owned),
+                        }),
+                        Some(true) | None => Ok(values),
+                    };
+                }
+                Some(Incoming::Answer(_) | Incoming::Other) | None => {}
+            }
+        }
+        Err(TransportError::NoReply {
+            asked: call.service.clone(),
+            patience,
+        })
+    }
+}
+
+fn is_stuck(error: &Error) -> bool {
+    matches!(error, Error::WriteBufferFull(_))
+        || matches!(error, Error::Io(error) if is_timeout(error))
+}
+
+fn lost(error: &Error) -> TransportError {
+    TransportError::Lost(error.to_string())
+}

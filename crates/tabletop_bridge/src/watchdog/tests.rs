@@ -1,0 +1,475 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::{
+    limits::{ACCELERATION, LIMIT_MARGIN},
+    state::JointReading,
+};
+
+/// A Baxter in simulated time that does what it is told, and drops what its limits forbid.
+struct Rig {
+    profile: BridgeProfile,
+    watchdog: Watchdog,
+    now: Duration,
+    /// Angles of the left arm, and the speeds or goals that it was sent last.
+    angles: Vec<f64>,
+    speeds: Vec<f64>,
+    state: RobotState,
+    target: RobotTarget,
+    set_at: Duration,
+    dropped: usize,
+    /// The orders of the last tick.
+    orders: Vec<RobotOrder>,
+}
+
+impl Rig {
+    fn watching(angles: &[f64]) -> Self {
+        let profile = BridgeProfile::shipped("baxter").unwrap();
+        let mut rig = Self {
+            watchdog: Watchdog::new(profile.clone(), &[0], 1.0),
+            profile,
+            now: Duration::from_secs(100),
+            angles: angles.to_owned(),
+            speeds: vec![0.0; 7],
+            state: RobotState {
+                health: Some(RobotHealth::Enabled),
+                ..RobotState::default()
+            },
+            target: RobotTarget::default(),
+            set_at: Duration::ZERO,
+            dropped: 0,
+            orders: Vec::new(),
+        };
+        rig.measure();
+        rig
+    }
+
+    fn armed(angles: &[f64]) -> Self {
+        let mut rig = Self::watching(angles);
+        rig.watchdog.arm(rig.now, &rig.state).unwrap();
+        rig
+    }
+
+    fn measure(&mut self) {
+        for (joint, position) in self.profile.limbs[0].joints.iter().zip(&self.angles) {
+            let reading = JointReading {
+                position: *position,
+                ..JointReading::default()
+            };
+            self.state.joints.insert(joint.name.clone(), reading);
+        }
+        self.state.joints_at = Some(self.now);
+    }
+
+    fn aim(&mut self, target: LimbTarget) {
+        self.target.limbs = [("left".to_owned(), target)].into();
+        self.set_at = self.now;
+    }
+
+    /// A period passes, in which the robot moves and is measured, unless it is not.
+    fn tick(&mut self, is_measured: bool) {
+        self.now += PERIOD;
+        for (angle, speed) in self.angles.iter_mut().zip(&self.speeds) {
+            *angle += speed * PERIOD.as_secs_f64();
+        }
+        if is_measured {
+            self.measure();
+        }
+        self.orders = self
+            .watchdog
+            .tick(self.now, &self.state, &self.target, self.set_at);
+        for order in self.orders.clone() {
+            self.obey(&order);
+        }
+    }
+
+    fn obey(&mut self, order: &RobotOrder) {
+        let joints = &self.profile.limbs[0].joints;
+        match order {
+            RobotOrder::Velocities { speeds, .. } => {
+                let passes =
+                    joints
+                        .iter()
+                        .zip(&self.angles)
+                        .zip(speeds)
+                        .any(|((joint, angle), speed)| {
+                            let next = angle + speed * PERIOD.as_secs_f64();
+                            next < joint.limits.0 || next > joint.limits.1
+                        });
+                match passes {
+                    true => self.dropped += 1,
+                    false => self.speeds.clone_from(speeds),
+                }
+            }
+            RobotOrder::Positions { angles, .. } => {
+                let way = angles
+                    .iter()
+                    .zip(&self.angles)
+                    .map(|(goal, angle)| goal - angle);
+                self.speeds = way
+                    .map(|way| (way / PERIOD.as_secs_f64()).clamp(-1.5, 1.5))
+                    .collect();
+            }
+            RobotOrder::Open { .. }
+            | RobotOrder::Calibrate { .. }
+            | RobotOrder::TurnHead(_)
+            | RobotOrder::LimitTime { .. }
+            | RobotOrder::LimitSpeed { .. }
+            | RobotOrder::Enable => {}
+        }
+    }
+
+    fn run(&mut self, ticks: usize, target: &LimbTarget) {
+        for _ in 0..ticks {
+            self.aim(target.clone());
+            self.tick(true);
+        }
+    }
+
+    fn speeds_sent(&self) -> Option<&[f64]> {
+        self.orders.iter().find_map(|order| match order {
+            RobotOrder::Velocities { speeds, .. } => Some(speeds.as_slice()),
+            RobotOrder::Positions { .. }
+            | RobotOrder::Open { .. }
+            | RobotOrder::Calibrate { .. }
+            | RobotOrder::TurnHead(_)
+            | RobotOrder::LimitTime { .. }
+            | RobotOrder::LimitSpeed { .. }
+            | RobotOrder::Enable => None,
+        })
+    }
+}
+
+fn first_joint(speed: f64) -> LimbTarget {
+    let mut speeds = vec![0.0; 7];
+    speeds[0] = speed;
+    LimbTarget::Velocities(speeds)
+}
+
+const MIDDLE: [f64; 7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+
+#[test]
+fn nothing_is_sent_before_it_is_armed() {
+    let mut rig = Rig::watching(&MIDDLE);
+    rig.run(50, &first_joint(1.0));
+    assert_eq!(rig.orders, []);
+    assert_eq!(rig.angles, MIDDLE);
+}
+
+#[test]
+fn arming_limits_time_and_speed_and_moves_nothing() {
+    let mut rig = Rig::watching(&MIDDLE);
+    let orders = rig.watchdog.arm(rig.now, &rig.state).unwrap();
+    let [
+        RobotOrder::LimitTime { seconds, .. },
+        RobotOrder::LimitSpeed { ratio, .. },
+    ] = &orders[..]
+    else {
+        panic!("{orders:?}");
+    };
+    assert_eq!((*seconds, *ratio), (0.1, 1.0));
+    rig.tick(true);
+    assert_eq!(rig.speeds_sent().unwrap(), [0.0; 7]);
+}
+
+#[test]
+fn a_speed_is_reached_by_the_acceleration() {
+    let mut rig = Rig::armed(&MIDDLE);
+    rig.run(10, &first_joint(1.0));
+    let speed = rig.speeds_sent().unwrap()[0];
+    assert!(
+        (speed - 10.0 * PERIOD.as_secs_f64() * ACCELERATION).abs() < 1e-9,
+        "{speed}"
+    );
+    rig.run(40, &first_joint(1.0));
+    assert_eq!(rig.speeds_sent().unwrap()[0], 1.0);
+}
+
+#[test]
+fn positions_are_reached_and_kept() {
+    let mut rig = Rig::armed(&MIDDLE);
+    let goal = [0.5, -0.6, 1.0, 1.5, -1.0, 0.3, 2.0];
+    rig.run(400, &LimbTarget::Positions(goal.into()));
+    for (angle, goal) in rig.angles.iter().zip(goal) {
+        assert!((angle - goal).abs() < 1e-3, "{:?}", rig.angles);
+    }
+    assert_eq!(rig.watchdog.state(), &WatchdogState::Armed);
+}
+
+#[test]
+fn a_position_beyond_a_limit_ends_before_it() {
+    let mut rig = Rig::armed(&MIDDLE);
+    let mut goal = MIDDLE;
+    goal[0] = 3.0;
+    rig.run(500, &LimbTarget::Positions(goal.into()));
+    let limit = 1.70167993878 - LIMIT_MARGIN;
+    assert!((rig.angles[0] - limit).abs() < 1e-3, "{:?}", rig.angles);
+}
+
+/// Runs at a speed until something is the matter, and returns the reason.
+fn stopped_by(matter: impl Fn(&mut Rig)) -> (Rig, StopReason) {
+    let mut rig = Rig::armed(&MIDDLE);
+    rig.run(60, &first_joint(0.9));
+    for _ in 0..60 {
+        matter(&mut rig);
+        match rig.watchdog.state() {
+            WatchdogState::Ramping(reason) | WatchdogState::Held(reason) => {
+                let reason = reason.clone();
+                return (rig, reason);
+            }
+            WatchdogState::Watching | WatchdogState::Armed => {}
+        }
+    }
+    panic!("nothing stopped it");
+}
+
+#[test]
+fn each_thing_that_is_the_matter_stops_the_robot() {
+    let health = |health: RobotHealth| {
+        let (_, reason) = stopped_by(|rig| {
+            rig.state.health = Some(health);
+            rig.run(1, &first_joint(0.9));
+        });
+        reason
+    };
+    assert_eq!(
+        health(RobotHealth::EmergencyStop),
+        StopReason::EmergencyStop
+    );
+    assert_eq!(health(RobotHealth::Disabled), StopReason::Disabled);
+    assert_eq!(health(RobotHealth::Error), StopReason::RobotError);
+
+    let (_, reason) = stopped_by(|rig| {
+        rig.aim(first_joint(0.9));
+        rig.tick(false);
+    });
+    assert_eq!(
+        reason,
+        StopReason::StaleState {
+            age: OLDEST_STATE + PERIOD
+        }
+    );
+
+    let (_, reason) = stopped_by(|rig| rig.tick(true));
+    assert_eq!(
+        reason,
+        StopReason::ProgramLate {
+            by: OLDEST_TARGET + PERIOD
+        }
+    );
+
+    let (_, reason) = stopped_by(|rig| {
+        rig.now += OLDEST_TARGET;
+        rig.run(1, &first_joint(0.9));
+    });
+    assert_eq!(
+        reason,
+        StopReason::WatchdogLate {
+            by: OLDEST_TARGET + PERIOD
+        }
+    );
+
+    let (_, reason) = stopped_by(|rig| {
+        rig.speeds.fill(0.0); // It is stuck.
+        rig.run(1, &first_joint(0.9));
+    });
+    let StopReason::Deviation { joint, by } = reason else {
+        panic!("{reason:?}");
+    };
+    assert_eq!(joint, "left_s0");
+    assert!(
+        (MOST_DEVIATION..MOST_DEVIATION + 0.02).contains(&by),
+        "{by}"
+    );
+}
+
+#[test]
+fn a_stop_is_an_even_ramp_then_a_hold_then_silence() {
+    let (mut rig, _) = stopped_by(|rig| rig.tick(true));
+    let mut speeds = vec![rig.speeds_sent().unwrap()[0]];
+    let from = rig.now;
+    while matches!(rig.watchdog.state(), WatchdogState::Ramping(_)) {
+        rig.tick(true);
+        speeds.extend(rig.speeds_sent().map(|speeds| speeds[0]));
+    }
+    assert_eq!(rig.now - from, RAMP);
+    let differences: Vec<_> = speeds.windows(2).map(|pair| pair[0] - pair[1]).collect();
+    assert!(
+        differences
+            .iter()
+            .all(|difference| (difference - 0.09).abs() < 1e-9),
+        "{speeds:?}"
+    );
+    let [
+        RobotOrder::LimitTime { seconds: 0.2, .. },
+        RobotOrder::Positions { angles, .. },
+    ] = &rig.orders[..]
+    else {
+        panic!("{:?}", rig.orders);
+    };
+    assert_eq!(angles, &rig.angles);
+    let held = rig.angles.clone();
+    let mut holds = 0;
+    while !rig.watchdog.is_done(rig.now) {
+        rig.tick(true);
+        holds += usize::from(!rig.orders.is_empty());
+    }
+    assert_eq!(holds, 30);
+    assert_eq!(rig.angles, held);
+    rig.run(100, &first_joint(1.0));
+    assert_eq!(rig.orders, []);
+}
+
+#[test]
+fn a_robot_without_states_is_held_by_no_speed() {
+    let (mut rig, _) = stopped_by(|rig| {
+        rig.aim(first_joint(0.9));
+        rig.tick(false);
+    });
+    while !rig.watchdog.is_done(rig.now) {
+        rig.tick(false);
+        let is_speed = |order: &RobotOrder| !matches!(order, RobotOrder::Positions { .. });
+        assert!(rig.orders.iter().all(is_speed), "{:?}", rig.orders);
+    }
+    assert_eq!(rig.speeds, [0.0; 7]);
+}
+
+#[test]
+fn a_robot_that_is_stopped_is_sent_nothing_more() {
+    for health in [RobotHealth::EmergencyStop, RobotHealth::Disabled] {
+        let (mut rig, _) = stopped_by(|rig| {
+            rig.state.health = Some(health);
+            rig.run(1, &first_joint(0.9));
+        });
+        assert_eq!(rig.orders, []);
+        rig.state.health = Some(RobotHealth::Enabled);
+        rig.run(200, &first_joint(0.9));
+        assert_eq!(rig.orders, []);
+        assert!(rig.watchdog.arm(rig.now, &rig.state).is_err());
+    }
+}
+
+#[test]
+fn a_stop_while_it_comes_to_rest_ends_the_commands() {
+    let (mut rig, reason) = stopped_by(|rig| rig.tick(true));
+    assert!(matches!(reason, StopReason::ProgramLate { .. }));
+    rig.state.health = Some(RobotHealth::EmergencyStop);
+    rig.tick(true);
+    assert_eq!(rig.orders, []);
+    assert_eq!(
+        rig.watchdog.state(),
+        &WatchdogState::Held(StopReason::EmergencyStop)
+    );
+}
+
+#[test]
+fn a_robot_that_is_not_fit_is_not_armed() {
+    let mut rig = Rig::watching(&MIDDLE);
+    rig.now += Duration::from_millis(101);
+    let refused = rig.watchdog.arm(rig.now, &rig.state);
+    assert!(matches!(refused, Err(StopReason::StaleState { .. })));
+    rig.measure();
+    rig.state.health = None;
+    assert_eq!(
+        rig.watchdog.arm(rig.now, &rig.state),
+        Err(StopReason::Disabled)
+    );
+    rig.state.health = Some(RobotHealth::Enabled);
+    rig.watchdog.arm(rig.now, &rig.state).unwrap();
+}
+
+#[test]
+fn grippers_and_head_are_sent_only_what_is_new() {
+    let mut rig = Rig::armed(&MIDDLE);
+    let reading = crate::state::GripperReading {
+        id: 65538,
+        is_calibrated: true,
+        is_gripping: false,
+        opening: 1.0,
+    };
+    rig.state.grippers.insert("left".into(), reading);
+    let (mut openings, mut turns) = (0, 0);
+    for tick in 0..200 {
+        let wanted = f64::from(tick) / 200.0;
+        rig.target.grippers = [("left".to_owned(), wanted)].into();
+        rig.target.head = Some(wanted);
+        rig.run(1, &first_joint(0.0));
+        openings += rig
+            .orders
+            .iter()
+            .filter(|order| matches!(order, RobotOrder::Open { id: 65538, .. }))
+            .count();
+        turns += rig
+            .orders
+            .iter()
+            .filter(|order| matches!(order, RobotOrder::TurnHead(_)))
+            .count();
+    }
+    assert_eq!((openings, turns), (40, 20));
+}
+
+proptest! {
+    #[test]
+    fn whatever_a_program_wants_no_command_is_dropped(
+        starts in prop::collection::vec(0.02..0.98f64, 7),
+        targets in prop::collection::vec((any::<bool>(), prop::collection::vec(-6.0..6.0f64, 7)), 1..12),
+        measured in prop::collection::vec(any::<bool>(), 40),
+    ) {
+        let limits = BridgeProfile::shipped("baxter").unwrap().limbs[0].joints.clone();
+        let angles: Vec<_> = limits.iter().zip(&starts).map(|(it, share)| it.limits.0 + share * (it.limits.1 - it.limits.0)).collect();
+        let mut rig = Rig::armed(&angles);
+        for (is_by_positions, numbers) in targets {
+            let target = match is_by_positions {
+                true => LimbTarget::Positions(numbers),
+                false => LimbTarget::Velocities(numbers),
+            };
+            for tick in 0..40 {
+                rig.aim(target.clone());
+                // Every other state may be missing.
+                rig.tick(tick % 2 == 0 || measured[tick]);
+                prop_assert_eq!(rig.watchdog.state(), &WatchdogState::Armed);
+                for ((joint, angle), speed) in limits.iter().zip(&rig.angles).zip(&rig.speeds) {
+                    prop_assert!((joint.limits.0..=joint.limits.1).contains(angle), "{} at {angle}", joint.name);
+                    prop_assert!(speed.abs() <= joint.speed + 1e-9, "{} at {speed}", joint.name);
+                }
+            }
+        }
+        prop_assert_eq!(rig.dropped, 0);
+    }
+
+    #[test]
+    fn whatever_happens_a_stopped_robot_comes_to_rest(
+        events in prop::collection::vec((0..6u8, 1..15usize), 1..20),
+        speeds in prop::collection::vec(-4.0..4.0f64, 7),
+    ) {
+        let mut rig = Rig::armed(&MIDDLE);
+        let mut was_stopped = None;
+        for (event, ticks) in events {
+            for _ in 0..ticks {
+                match event {
+                    0 => rig.state.health = Some(RobotHealth::EmergencyStop),
+                    1 => rig.state.health = Some(RobotHealth::Enabled),
+                    2 => rig.state.health = Some(RobotHealth::Error),
+                    _ => {}
+                }
+                if event != 3 {
+                    rig.aim(LimbTarget::Velocities(speeds.clone()));
+                }
+                rig.tick(event != 4);
+                if *rig.watchdog.state() != WatchdogState::Armed {
+                    let since = *was_stopped.get_or_insert(rig.now);
+                    if rig.now - since > RAMP + HOLD + PERIOD {
+                        prop_assert!(rig.orders.is_empty());
+                        prop_assert!(rig.watchdog.is_done(rig.now));
+                    }
+                    if rig.now - since > RAMP {
+                        let is_moving = rig.speeds_sent().is_some_and(|speeds| speeds.iter().any(|speed| *speed != 0.0));
+                        prop_assert!(!is_moving);
+                    }
+                } else {
+                    prop_assert_eq!(was_stopped, None);
+                }
+            }
+        }
+    }
+}
