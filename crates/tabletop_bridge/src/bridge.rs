@@ -15,18 +15,21 @@ use crate::{
     error::BridgeError,
     guard::Guard,
     observation::{PATIENCE, observe, read_until},
-    orders::{RobotOrder, message, topics},
+    orders::{GripperMotion, RobotOrder, message, topics},
     profile::BridgeProfile,
     ros1::Ros1,
     rosbridge::Rosbridge,
     state::{RobotHealth, RobotState, StateReader},
     target::{RobotTarget, TargetError},
     transport::{Transport, TransportError},
-    watchdog::{PERIOD, StopReason, Watchdog, WatchdogState, unfit},
+    watchdog::{PERIOD, REPETITION, StopReason, Watchdog, WatchdogState, unfit},
 };
 
 /// The time from one request to be switched on to the next.
 const ENABLE_PERIOD: Duration = Duration::from_millis(100);
+
+/// How long a gripper may take to find out its range.
+const CALIBRATION: Duration = Duration::from_secs(10);
 
 /// How a robot is driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,16 +145,17 @@ impl Bridge {
                 reason,
             });
         }
-        let waiting = match options.calibrate {
-            true => calibrations(profile, &driven, reader.state()),
-            false => Vec::new(),
-        };
+        if options.calibrate {
+            for limb in &driven {
+                calibrate(&mut *transport, &mut reader, profile, *limb, clock)?;
+            }
+        }
         let shared = Arc::new(Mutex::new(Driving {
             watchdog: Watchdog::new(profile.clone(), &driven, options.speed),
             state: reader.state().clone(),
             target: RobotTarget::default(),
             set_at: Duration::ZERO,
-            waiting,
+            waiting: Vec::new(),
         }));
         let of_thread = shared.clone();
         let of_robot = profile.clone();
@@ -332,15 +336,47 @@ fn enable(
     Ok(())
 }
 
-fn calibrations(profile: &BridgeProfile, driven: &[usize], state: &RobotState) -> Vec<RobotOrder> {
-    let grippers = driven.iter().filter_map(|limb| {
-        let reading = state.grippers.get(&profile.limbs[*limb].name)?;
-        (!reading.is_calibrated).then_some(RobotOrder::Calibrate {
-            limb: *limb,
-            id: reading.id,
-        })
-    });
-    grippers.collect()
+/// Lets a limb's gripper find out its range, if it has one that does not know it.
+fn calibrate(
+    transport: &mut dyn Transport,
+    reader: &mut StateReader,
+    profile: &BridgeProfile,
+    limb: usize,
+    clock: WallClock,
+) -> Result<(), BridgeError> {
+    let name = &profile.limbs[limb].name;
+    let reading = |reader: &StateReader| reader.state().grippers.get(name).copied();
+    if profile.limbs[limb].gripper.is_some() {
+        read_until(transport, reader, clock, PATIENCE, |reader| {
+            reading(reader).is_some()
+        })?;
+    }
+    let Some(before) = reading(reader) else {
+        return Ok(());
+    };
+    let order = RobotOrder::MoveGripper {
+        limb,
+        id: before.id,
+        motion: GripperMotion::Calibrate,
+        sequence: before.sequence.unwrap_or_default().wrapping_add(1),
+    };
+    let is_calibrated = |reader: &StateReader| reading(reader).is_some_and(|it| it.is_calibrated);
+    let deadline = clock.now() + CALIBRATION;
+    while !is_calibrated(reader) {
+        if clock.until(deadline).is_zero() {
+            return Err(BridgeError::NotCalibrated {
+                limb: name.clone(),
+                patience: CALIBRATION,
+            });
+        }
+        // Once it has begun, it is not begun again.
+        let has_begun = reading(reader).is_some_and(|it| it.sequence != before.sequence);
+        if let Some((topic, message)) = message(profile, &order).filter(|_| !has_begun) {
+            transport.publish(&topic, &message)?;
+        }
+        read_until(transport, reader, clock, REPETITION, is_calibrated)?;
+    }
+    Ok(())
 }
 
 /// The watchdog's thread: reads until the next look is due, looks, and sends.

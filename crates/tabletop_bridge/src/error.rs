@@ -52,6 +52,14 @@ pub enum BridgeError {
         /// The reason.
         reason: StopReason,
     },
+    /// A gripper does not find out its range.
+    #[error("the gripper of limb {limb:?} has not calibrated itself within {} s", .patience.as_secs_f64())]
+    NotCalibrated {
+        /// The limb's name.
+        limb: String,
+        /// How long it was waited for.
+        patience: Duration,
+    },
     /// There is no such limb.
     #[error("{robot} has no limb {limb:?}")]
     NoLimb {

@@ -41,7 +41,7 @@ pub use clock::WallClock;
 pub use error::BridgeError;
 pub use guard::Guard;
 pub use limits::{ACCELERATION, LIMIT_MARGIN, LINEAR_ZONE, approach_speed};
-pub use orders::RobotOrder;
+pub use orders::{GripperMotion, RobotOrder};
 pub use profile::{
     BridgeProfile, CameraProfile, CommandTopic, GripperProfile, HeadProfile, HealthTopic,
     JointProfile, LimbProfile, ProfileError, RosVersion, SoftwareVersion, TimeLimit,

@@ -15,7 +15,7 @@ const VELOCITY_MODE: i32 = 2;
 const HEAD_SPEED: f64 = 0.2;
 
 /// Who sends a gripper's commands.
-const SENDER: &str = "tabletop";
+pub(crate) const SENDER: &str = "tabletop";
 
 /// What a robot is sent. Limbs are their places in the profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,21 +34,16 @@ pub enum RobotOrder {
         /// An angle for each joint.
         angles: Vec<f64>,
     },
-    /// A gripper opens or closes.
-    Open {
+    /// A gripper moves.
+    MoveGripper {
         /// The limb.
         limb: usize,
         /// The gripper's id.
         id: u32,
-        /// From 0 (closed) to 1 (open).
-        opening: f64,
-    },
-    /// A gripper finds out its range, by closing and opening.
-    Calibrate {
-        /// The limb.
-        limb: usize,
-        /// The gripper's id.
-        id: u32,
+        /// What it does.
+        motion: GripperMotion,
+        /// The number by which the gripper says that it has got this.
+        sequence: u32,
     },
     /// The head turns to an angle, in rad.
     TurnHead(f64),
@@ -68,6 +63,15 @@ pub enum RobotOrder {
     },
     /// The motors are switched on.
     Enable,
+}
+
+/// What a gripper does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GripperMotion {
+    /// It goes to an opening, from 0 (closed) to 1 (open).
+    Open(f64),
+    /// It finds out its range, by closing and opening.
+    Calibrate,
 }
 
 /// The topics on which orders are sent, and whether the last message of each is kept for those who listen later.
@@ -130,17 +134,22 @@ pub(crate) fn message(profile: &BridgeProfile, order: &RobotOrder) -> Option<(St
             let topic = limb.positions.as_ref()?;
             Some(joint_command(limb, topic, POSITION_MODE, angles))
         }
-        RobotOrder::Open {
+        RobotOrder::MoveGripper {
             limb: place,
             id,
-            opening,
+            motion,
+            sequence,
         } => {
-            let percent = 100.0 * opening.clamp(0.0, 1.0);
-            let arguments = json!({"position": percent}).to_string();
-            gripper_command(limb(place), *id, "go", &arguments)
-        }
-        RobotOrder::Calibrate { limb: place, id } => {
-            gripper_command(limb(place), *id, "calibrate", "")
+            let GripperProfile::EndEffector(topic) = limb(place).gripper.as_ref()?;
+            let (command, arguments) = match motion {
+                GripperMotion::Open(opening) => {
+                    let percent = 100.0 * opening.clamp(0.0, 1.0);
+                    ("go", json!({"position": percent}).to_string())
+                }
+                GripperMotion::Calibrate => ("calibrate", String::new()),
+            };
+            let message = json!({"id": id, "command": command, "args": arguments, "sender": SENDER, "sequence": sequence});
+            Some((format!("{topic}/command"), message))
         }
         RobotOrder::TurnHead(angle) => {
             let topic = profile.head.as_ref()?.topic.clone();
@@ -185,18 +194,6 @@ fn joint_command(
     (topic.topic().to_owned(), message)
 }
 
-fn gripper_command(
-    limb: &LimbProfile,
-    id: u32,
-    command: &str,
-    arguments: &str,
-) -> Option<(String, Json)> {
-    let GripperProfile::EndEffector(topic) = limb.gripper.as_ref()?;
-    let message =
-        json!({"id": id, "command": command, "args": arguments, "sender": SENDER, "sequence": 0});
-    Some((format!("{topic}/command"), message))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -212,10 +209,11 @@ mod tests {
         assert_eq!(topic, "/robot/limb/right/joint_command");
         assert_eq!(sent["mode"], 2);
         assert_eq!(sent["names"][6], "right_w2");
-        let order = RobotOrder::Open {
+        let order = RobotOrder::MoveGripper {
             limb: 0,
             id: 65538,
-            opening: 0.4,
+            motion: GripperMotion::Open(0.4),
+            sequence: 7,
         };
         let (topic, sent) = message(&profile, &order).unwrap();
         assert_eq!(topic, "/robot/end_effector/left_gripper/command");

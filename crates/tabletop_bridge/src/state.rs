@@ -8,6 +8,7 @@ use std::{
 use serde_json::Value as Json;
 
 use crate::{
+    orders::SENDER,
     profile::{BridgeProfile, GripperProfile, HealthTopic, RosVersion},
     transport::{Received, TopicType},
 };
@@ -65,6 +66,8 @@ pub struct GripperReading {
     pub is_gripping: bool,
     /// Its opening, from 0 (closed) to 1 (open).
     pub opening: f64,
+    /// The number of this program's last command that it has got.
+    pub sequence: Option<u32>,
 }
 
 impl RobotState {
@@ -247,6 +250,10 @@ fn gripper(message: &Json) -> Option<GripperReading> {
         is_calibrated: number("calibrated")? == 1,
         is_gripping: number("gripping")? == 1,
         opening: message.get("position")?.as_f64()? / 100.0,
+        sequence: match message.get("command_sender")?.as_str()? == SENDER {
+            true => u32::try_from(number("command_sequence")?).ok(),
+            false => None,
+        },
     })
 }
 

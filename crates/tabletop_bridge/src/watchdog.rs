@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, fmt, time::Duration};
 
 use crate::{
     limits::{limited_speed, ramped_speed, speed_towards},
-    orders::RobotOrder,
+    orders::{GripperMotion, RobotOrder},
     profile::{BridgeProfile, JointProfile},
     state::{RobotHealth, RobotState},
     target::{LimbTarget, RobotTarget},
@@ -37,6 +37,9 @@ const FORGETTING: f64 = 1.0;
 /// The least change of an opening, from 0 to 1, and the least time between two, that a gripper is sent.
 const GRIPPER_STEP: f64 = 0.01;
 const GRIPPER_PERIOD: Duration = Duration::from_millis(50);
+
+/// The time after which something is sent again that need not have arrived: a topic has no receiver until the two have found each other.
+pub(crate) const REPETITION: Duration = Duration::from_millis(500);
 
 /// The least change of the head's angle, in rad, and the least time between two, that the robot is sent.
 const HEAD_STEP: f64 = 0.005;
@@ -140,8 +143,16 @@ pub struct Watchdog {
     last_tick: Option<Duration>,
     limbs: Vec<LimbMotion>,
     /// What grippers and head were sent last, and when.
-    openings: BTreeMap<usize, (f64, Duration)>,
+    openings: BTreeMap<usize, SentOpening>,
     head: Option<(f64, Duration)>,
+}
+
+/// What a gripper was sent.
+#[derive(Clone, Copy, Debug)]
+struct SentOpening {
+    opening: f64,
+    sequence: u32,
+    at: Duration,
 }
 
 /// The motion of a driven limb.
@@ -364,24 +375,44 @@ impl Watchdog {
     ) -> Vec<RobotOrder> {
         let mut orders = Vec::new();
         for motion in &self.limbs {
-            let (place, name) = (motion.limb, &self.profile.limbs[motion.limb].name);
+            let (limb, name) = (motion.limb, &self.profile.limbs[motion.limb].name);
             let (Some(opening), Some(reading)) =
                 (target.grippers.get(name), state.grippers.get(name))
             else {
                 continue;
             };
             let opening = opening.clamp(0.0, 1.0);
-            let is_new = self.openings.get(&place).is_none_or(|(last, at)| {
-                (last - opening).abs() >= GRIPPER_STEP && now.saturating_sub(*at) >= GRIPPER_PERIOD
-            });
-            if is_new {
-                self.openings.insert(place, (opening, now));
-                orders.push(RobotOrder::Open {
-                    limb: place,
-                    id: reading.id,
+            let heard = reading.sequence.unwrap_or_default();
+            let sequence = match self.openings.get(&limb) {
+                Some(last) if (last.opening - opening).abs() < GRIPPER_STEP => {
+                    let is_unheard = reading.sequence != Some(last.sequence);
+                    (is_unheard && now.saturating_sub(last.at) >= REPETITION)
+                        .then_some(last.sequence)
+                }
+                Some(last) => {
+                    let is_due = now.saturating_sub(last.at) >= GRIPPER_PERIOD;
+                    is_due.then(|| last.sequence.max(heard).wrapping_add(1))
+                }
+                None => Some(heard.wrapping_add(1)),
+            };
+            let Some(sequence) = sequence else {
+                continue;
+            };
+            let at = now;
+            self.openings.insert(
+                limb,
+                SentOpening {
                     opening,
-                });
-            }
+                    sequence,
+                    at,
+                },
+            );
+            orders.push(RobotOrder::MoveGripper {
+                limb,
+                id: reading.id,
+                motion: GripperMotion::Open(opening),
+                sequence,
+            });
         }
         orders
     }
@@ -390,7 +421,9 @@ impl Watchdog {
         let (least, largest) = self.profile.head.as_ref()?.joint.limits;
         let angle = target.head?.clamp(least, largest);
         let is_new = self.head.is_none_or(|(last, at)| {
-            (last - angle).abs() >= HEAD_STEP && now.saturating_sub(at) >= HEAD_PERIOD
+            let since = now.saturating_sub(at);
+            let is_other = (last - angle).abs() >= HEAD_STEP && since >= HEAD_PERIOD;
+            is_other || since >= REPETITION
         });
         is_new.then(|| {
             self.head = Some((angle, now));

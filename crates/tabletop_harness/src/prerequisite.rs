@@ -15,6 +15,8 @@ pub enum Prerequisite {
     Octave,
     /// Python 3, as `python3`.
     Python,
+    /// The client library and the master of ROS 1, for the system's own Python: Debian's `python3-rospy` and `python3-rosmaster`.
+    Rospy,
     /// Perl, as `perl`.
     Perl,
     /// The validator `xmllint` of libxml2.
@@ -31,6 +33,13 @@ impl Prerequisite {
         match self {
             Self::Octave => succeeds("octave-cli", ["--version"]),
             Self::Python => succeeds("python3", ["--version"]),
+            Self::Rospy => succeeds(
+                "/usr/bin/python3",
+                [
+                    "-c",
+                    "import genpy.dynamic, rosmaster.master, rospy, sensor_msgs.msg",
+                ],
+            ),
             Self::Perl => succeeds("perl", ["-v"]),
             Self::Xmllint => succeeds("xmllint", ["--version"]),
             Self::Strace => succeeds("strace", ["-f", "-qq", "--seccomp-bpf", "true"]),
@@ -44,6 +53,7 @@ impl fmt::Display for Prerequisite {
         f.write_str(match self {
             Self::Octave => "GNU Octave (octave-cli)",
             Self::Python => "Python 3 (python3)",
+            Self::Rospy => "ROS 1 (python3-rospy, python3-rosmaster, python3-sensor-msgs)",
             Self::Perl => "Perl (perl)",
             Self::Xmllint => "xmllint",
             Self::Strace => "strace",
