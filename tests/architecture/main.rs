@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 38] = [
+const RULES: [Rule; 39] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -89,6 +89,7 @@ const RULES: [Rule; 38] = [
         ],
     )
     .with_rapier(),
+    Rule::new("tabletop_bridge", &["tabletop_storage"]),
     Rule::new("tabletop_engine", &[]),
     Rule::new(
         "tabletop_script",

@@ -68,6 +68,22 @@ pub enum BridgeError {
         /// The limb's.
         limb: String,
     },
+    /// There is no such camera.
+    #[error("{robot} has no camera {camera:?}")]
+    NoCamera {
+        /// The robot's name.
+        robot: String,
+        /// The camera's.
+        camera: String,
+    },
+    /// A camera does not open.
+    #[error("the camera {camera} does not open: {answer}")]
+    CameraClosed {
+        /// Its name.
+        camera: String,
+        /// The robot's answer.
+        answer: String,
+    },
     /// The share of the greatest speed makes no sense.
     #[error("the speed is {0}; it must be a share of the greatest one, above 0 and at most 1")]
     Speed(f64),

@@ -22,10 +22,12 @@ mod bridge;
 mod clock;
 mod connection;
 mod error;
+mod follower;
 mod guard;
 mod limits;
 mod observation;
 mod orders;
+mod pictures;
 mod profile;
 mod ros1;
 mod rosbridge;
@@ -42,9 +44,10 @@ pub use error::BridgeError;
 pub use guard::Guard;
 pub use limits::{ACCELERATION, LIMIT_MARGIN, LINEAR_ZONE, approach_speed};
 pub use orders::{GripperMotion, RobotOrder};
+pub use pictures::{PictureFeed, RobotPicture};
 pub use profile::{
-    BridgeProfile, CameraProfile, CommandTopic, GripperProfile, HeadProfile, HealthTopic,
-    JointProfile, LimbProfile, ProfileError, RosVersion, SoftwareVersion, TimeLimit,
+    BridgeProfile, CameraOpening, CameraProfile, CommandTopic, GripperProfile, HeadProfile,
+    HealthTopic, JointProfile, LimbProfile, ProfileError, RosVersion, SoftwareVersion, TimeLimit,
 };
 pub use ros1::Ros1;
 pub use rosbridge::Rosbridge;

@@ -151,13 +151,32 @@ pub struct HeadProfile {
 }
 
 /// A camera's interface.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraProfile {
     /// Its name in `robot.ron`; `head` is the robot's eye.
     pub name: String,
     /// The topic of its pictures (`sensor_msgs/Image`).
     pub topic: String,
+    /// How it is opened; none if it always is.
+    #[serde(default)]
+    pub opening: Option<CameraOpening>,
+}
+
+/// How a camera is opened (`baxter_core_msgs/OpenCamera`).
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraOpening {
+    /// The service.
+    pub service: String,
+    /// The camera's name there.
+    pub name: String,
+    /// Columns and rows of its pictures.
+    pub size: (u32, u32),
+    /// Pictures a second.
+    pub rate: f64,
+    /// Whether it hangs upside down, so that the robot must turn its pictures.
+    pub is_upside_down: bool,
 }
 
 /// A `bridge.ron` that cannot be used.
@@ -346,7 +365,13 @@ impl BridgeProfile {
             self.enable.as_deref(),
         ];
         let head = self.head.as_ref().map(|head| head.topic.as_str());
-        let cameras = self.cameras.iter().map(|camera| camera.topic.as_str());
+        let cameras = self.cameras.iter().flat_map(|camera| {
+            let service = camera
+                .opening
+                .as_ref()
+                .map(|opening| opening.service.as_str());
+            [camera.topic.as_str()].into_iter().chain(service)
+        });
         of_limbs
             .chain(whole.into_iter().flatten())
             .chain(head)

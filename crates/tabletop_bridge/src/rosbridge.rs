@@ -298,6 +298,14 @@ impl Transport for Rosbridge {
     }
 }
 
+impl Drop for Rosbridge {
+    /// Says goodbye, as far as that is still heard.
+    fn drop(&mut self) {
+        drop(self.socket.close(None));
+        drop(self.socket.flush());
+    }
+}
+
 fn is_stuck(error: &Error) -> bool {
     matches!(error, Error::WriteBufferFull(_))
         || matches!(error, Error::Io(error) if is_timeout(error))

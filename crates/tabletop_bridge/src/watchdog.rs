@@ -140,6 +140,7 @@ pub struct Watchdog {
     state: WatchdogState,
     /// When it came to this state.
     since: Duration,
+    /// When it last looked; none if it was never armed.
     last_tick: Option<Duration>,
     limbs: Vec<LimbMotion>,
     /// What grippers and head were sent last, and when.
@@ -200,11 +201,12 @@ impl Watchdog {
         &self.state
     }
 
-    /// True once the robot is held and has been told so for long enough: nothing is sent any more.
+    /// True once the robot is held and has been told so for long enough: nothing is sent any more. One that was never driven is told nothing.
     pub fn is_done(&self, now: Duration) -> bool {
         match &self.state {
             WatchdogState::Held(reason) => {
-                reason.is_robot_at_rest() || now.saturating_sub(self.since) > HOLD
+                let was_driven = self.last_tick.is_some();
+                !was_driven || reason.is_robot_at_rest() || now.saturating_sub(self.since) > HOLD
             }
             WatchdogState::Watching | WatchdogState::Armed | WatchdogState::Ramping(_) => false,
         }

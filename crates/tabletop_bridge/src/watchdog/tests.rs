@@ -153,6 +153,10 @@ fn nothing_is_sent_before_it_is_armed() {
     rig.run(50, &first_joint(1.0));
     assert_eq!(rig.orders, []);
     assert_eq!(rig.angles, MIDDLE);
+    rig.watchdog.stop(StopReason::Asked, rig.now);
+    rig.run(1, &first_joint(1.0));
+    assert_eq!(rig.orders, []);
+    assert!(rig.watchdog.is_done(rig.now));
 }
 
 #[test]
@@ -423,7 +427,7 @@ fn grippers_and_head_are_sent_only_what_is_new() {
             .sum::<usize>()
     };
     assert_eq!(count(&mut rig, None), 4);
-    assert_eq!(count(&mut rig, Some(40)), 0);
+    assert_eq!(count(&mut rig, Some(41)), 0);
 }
 
 proptest! {
@@ -441,10 +445,10 @@ proptest! {
                 true => LimbTarget::Positions(numbers),
                 false => LimbTarget::Velocities(numbers),
             };
-            for tick in 0..40 {
+            for (tick, is_measured) in measured.iter().enumerate() {
                 rig.aim(target.clone());
                 // Every other state may be missing.
-                rig.tick(tick % 2 == 0 || measured[tick]);
+                rig.tick(tick % 2 == 0 || *is_measured);
                 prop_assert_eq!(rig.watchdog.state(), &WatchdogState::Armed);
                 for ((joint, angle), speed) in limits.iter().zip(&rig.angles).zip(&rig.speeds) {
                     prop_assert!((joint.limits.0..=joint.limits.1).contains(angle), "{} at {angle}", joint.name);

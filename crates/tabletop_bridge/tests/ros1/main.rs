@@ -1,13 +1,17 @@
 //! The native way, with a mock Baxter on the genuine rospy and rosmaster.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "../driving/mod.rs"]
 mod driving;
 mod killed;
 mod mock;
 
 use std::process::ExitCode;
 
-use tabletop_bridge::{BridgeOptions, BridgeProfile, Shadow, StopReason};
+use tabletop_bridge::{
+    Bridge, BridgeOptions, BridgeProfile, LimbTarget, PictureFeed, RobotState, RobotTarget, Shadow,
+    StopReason,
+};
 use tabletop_harness::test_with;
 
 use crate::{
@@ -96,20 +100,16 @@ fn positions_gripper_and_head_are_reached() {
             ..right_arm()
         };
         let mut drive = Drive::begin(&baxter.address(), &profile(), &options);
-        let is_calibrated = |state: &tabletop_bridge::RobotState| {
+        let is_calibrated = |state: &RobotState| {
             state
                 .grippers
                 .get("right")
                 .is_some_and(|it| it.is_calibrated)
         };
-        drive.until(&tabletop_bridge::RobotTarget::default(), is_calibrated)?;
+        drive.until(&RobotTarget::default(), is_calibrated)?;
         let goal = [0.2, 0.1, 0.9, 0.8, -0.3, 0.6, 1.5];
-        let target = tabletop_bridge::RobotTarget {
-            limbs: [(
-                "right".to_owned(),
-                tabletop_bridge::LimbTarget::Positions(goal.into()),
-            )]
-            .into(),
+        let target = RobotTarget {
+            limbs: [("right".to_owned(), LimbTarget::Positions(goal.into()))].into(),
             grippers: [("right".to_owned(), 0.4)].into(),
             head: Some(0.3),
         };
@@ -132,6 +132,7 @@ fn positions_gripper_and_head_are_reached() {
                 < report.modes["right"].len()
         );
         assert_eq!(report.openings, [100.0, 40.0]);
+        assert!((report.head - 0.3).abs() < 1e-6);
         Ok(())
     });
 }
@@ -187,10 +188,38 @@ fn silence_and_a_stuck_arm_stop_it() {
 }
 
 #[test_with(Rospy)]
+fn a_program_that_falls_silent_stops_it() {
+    let mut baxter = MockBaxter::start();
+    let drive = Drive::begin(&baxter.address(), &profile(), &right_arm());
+    drive.until_the_watchdog_stops();
+    drive
+        .stop_by(|reason| matches!(reason, StopReason::ProgramLate { .. }))
+        .unwrap();
+    assert_eq!(baxter.report().modes["right"].last(), Some(&1));
+}
+
+#[test_with(Rospy)]
+fn a_camera_is_opened_and_its_pictures_come() {
+    let mut baxter = MockBaxter::start();
+    let feed = PictureFeed::connect(&baxter.address(), &profile(), "head").unwrap();
+    let opened = ("head_camera".to_owned(), 640, 400, vec![107, 108]);
+    assert_eq!(baxter.report().opened, Some(opened));
+    driving::wait_until(|| feed.latest().is_some());
+    let picture = feed.latest().unwrap();
+    assert_eq!((picture.width, picture.height), (640, 400));
+    assert!(
+        picture
+            .rgb
+            .chunks_exact(3)
+            .all(|pixel| pixel == [30, 20, 10])
+    );
+}
+
+#[test_with(Rospy)]
 fn motors_are_switched_on_only_with_leave() {
     let mut baxter = MockBaxter::start();
     baxter.order("disable");
-    let refused = tabletop_bridge::Bridge::connect(&baxter.address(), &profile(), &right_arm());
+    let refused = Bridge::connect(&baxter.address(), &profile(), &right_arm());
     assert_eq!(
         refused.unwrap_err().to_string(),
         "Baxter cannot be driven: the robot's motors are off"
@@ -200,6 +229,6 @@ fn motors_are_switched_on_only_with_leave() {
         enable: true,
         ..right_arm()
     };
-    drop(tabletop_bridge::Bridge::connect(&baxter.address(), &profile(), &options).unwrap());
+    drop(Bridge::connect(&baxter.address(), &profile(), &options).unwrap());
     assert!(baxter.report().enabled);
 }

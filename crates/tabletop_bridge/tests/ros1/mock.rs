@@ -29,7 +29,7 @@ pub struct Report {
     pub ratios: [f64; 2],
     pub openings: [f64; 2],
     pub head: f64,
-    pub opened: Option<(String, u32, u32)>,
+    pub opened: Option<(String, u32, u32, Vec<i32>)>,
     pub enabled: bool,
 }
 

@@ -256,7 +256,8 @@ class Baxter:
             self.state.enabled = message.data and not self.state.stopped
 
     def open_camera(self, request):
-        self.opened = [request.name, request.settings.width, request.settings.height]
+        settings = request.settings
+        self.opened = [request.name, settings.width, settings.height, [control.id for control in settings.controls]]
         return OpenCamera._response_class(err=0)
 
     def order(self, order):
@@ -320,8 +321,9 @@ class Baxter:
                 # A gripper's own states share the joints' topic.
                 self.joint_states.publish(JointState(name=["l_gripper_l_finger_joint"], position=[0.01]))
             if ticks % 25 == 0 and self.opened:
-                _, width, height = self.opened
-                self.pictures.publish(Image(width=width, height=height, encoding="bgra8", step=4 * width, data=bytes(4 * width * height)))
+                _, width, height, _ = self.opened
+                data = bytes([10, 20, 30, 255]) * (width * height)
+                self.pictures.publish(Image(width=width, height=height, encoding="bgra8", step=4 * width, data=data))
             ticks += 1
 
 

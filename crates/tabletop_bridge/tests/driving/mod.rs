@@ -24,14 +24,13 @@ const TRIES: usize = 6;
 pub struct Busy(StopReason);
 
 /// A robot that is driven.
-pub struct Drive(Bridge);
+pub struct Drive(pub Bridge);
 
 /// Does it again if the machine was busy.
 pub fn retried(test: impl Fn() -> Result<(), Busy>) {
     for _ in 1..TRIES {
-        match test() {
-            Ok(()) => return,
-            Err(Busy(reason)) => eprintln!("once more: {reason}"),
+        if test().is_ok() {
+            return;
         }
     }
     test().unwrap();
@@ -98,6 +97,11 @@ impl Drive {
             assert!(start.elapsed() < PATIENCE, "nothing has stopped it");
             thread::sleep(PERIOD);
         }
+    }
+
+    /// Sets no target until the watchdog stops the robot.
+    pub fn until_the_watchdog_stops(&self) {
+        wait_until(|| self.reason().is_some());
     }
 
     /// Ends, for this reason.
