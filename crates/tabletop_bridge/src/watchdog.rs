@@ -278,10 +278,10 @@ impl Watchdog {
         target: &RobotTarget,
         set_at: Duration,
     ) -> Vec<RobotOrder> {
-        if self.state == WatchdogState::Watching {
+        let Some(last) = self.last_tick else {
             return Vec::new();
-        }
-        let last = self.last_tick.replace(now).unwrap_or(now);
+        };
+        self.last_tick = Some(now);
         let passed = now.saturating_sub(last);
         if self.state == WatchdogState::Armed {
             if let Some(reason) = self.fault(now, passed, state, set_at) {

@@ -33,7 +33,9 @@ pub fn retried(test: impl Fn() -> Result<(), Busy>) {
             return;
         }
     }
-    test().unwrap();
+    if let Err(Busy(reason)) = test() {
+        panic!("this machine is too busy: {reason}");
+    }
 }
 
 /// Waits until a condition holds.

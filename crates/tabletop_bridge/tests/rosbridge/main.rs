@@ -229,7 +229,7 @@ fn states_at_10_hz_are_too_old_to_drive() {
 #[test]
 fn a_program_that_falls_silent_stops_it() {
     let server = MockServer::start("baxter");
-    let mut drive = retry(|| under_way(&server));
+    let drive = retry(|| under_way(&server));
     drive.until_the_watchdog_stops();
     drive
         .stop_by(|reason| matches!(reason, StopReason::ProgramLate { .. }))

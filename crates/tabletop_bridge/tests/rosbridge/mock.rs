@@ -174,13 +174,12 @@ fn serve(
         // It answers until the next state is due.
         let due = last + Duration::from_millis(10);
         let trouble = robot.lock().unwrap().trouble;
-        match trouble {
-            Trouble::Closed => return Ok(()),
-            Trouble::HalfOpen => {
-                thread::sleep(Duration::from_millis(5));
-                continue;
-            }
-            _ => {}
+        if trouble == Trouble::Closed {
+            return Ok(());
+        }
+        if trouble == Trouble::HalfOpen {
+            thread::sleep(Duration::from_millis(5));
+            continue;
         }
         while let Some(wait) = due
             .checked_duration_since(Instant::now())
