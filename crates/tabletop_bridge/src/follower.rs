@@ -21,11 +21,11 @@ const PERIOD: Duration = Duration::from_millis(50);
 
 /// Something that is heard of a robot, such as its state, for as long as this lives.
 pub(crate) struct Follower<T> {
-    shared: Arc<Shared<T>>,
+    shared: Arc<Followed<T>>,
     thread: Option<JoinHandle<()>>,
 }
 
-struct Shared<T> {
+struct Followed<T> {
     heard: Mutex<Heard<T>>,
     is_over: AtomicBool,
 }
@@ -39,7 +39,7 @@ pub(crate) struct Heard<T> {
     pub(crate) fault: Option<String>,
 }
 
-impl<T> Shared<T> {
+impl<T> Followed<T> {
     fn heard(&self) -> MutexGuard<'_, Heard<T>> {
         self.heard.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -59,7 +59,7 @@ impl<T: Send + 'static> Follower<T> {
         latest: T,
         mut take: impl FnMut(&mut T, Received) + Send + 'static,
     ) -> Result<Self, BridgeError> {
-        let shared = Arc::new(Shared {
+        let shared = Arc::new(Followed {
             heard: Mutex::new(Heard {
                 latest,
                 nonsense: listener.nonsense(),

@@ -107,7 +107,7 @@ pub(super) fn answer(value: &RpcValue) -> String {
 
 /// What a text says.
 pub(super) fn parse(xml: &str) -> Result<RpcMessage, String> {
-    let root = Node::read(xml)?;
+    let root = XmlNode::read(xml)?;
     let params = root.child("params");
     let values = params.iter().flat_map(|params| &params.children);
     let values: Result<Vec<_>, _> = values
@@ -133,13 +133,13 @@ pub(super) fn parse(xml: &str) -> Result<RpcMessage, String> {
 
 /// An element.
 #[derive(Debug, Default)]
-struct Node {
+struct XmlNode {
     name: String,
     text: String,
-    children: Vec<Node>,
+    children: Vec<XmlNode>,
 }
 
-impl Node {
+impl XmlNode {
     fn read(xml: &str) -> Result<Self, String> {
         let mut reader = Reader::from_str(xml);
         reader.config_mut().expand_empty_elements = true;
