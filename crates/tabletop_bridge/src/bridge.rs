@@ -207,7 +207,11 @@ impl Bridge {
     pub fn aim(&mut self, target: RobotTarget) -> Result<(), TargetError> {
         let state = {
             let driving = lock(&self.shared);
+            let is_over = self.thread.as_ref().is_none_or(JoinHandle::is_finished);
             match driving.watchdog.state() {
+                WatchdogState::Armed if is_over => {
+                    return Err(TargetError::NotDriven("its watchdog has ended".into()));
+                }
                 WatchdogState::Armed => {}
                 WatchdogState::Watching => {
                     return Err(TargetError::NotDriven("it is not armed".into()));

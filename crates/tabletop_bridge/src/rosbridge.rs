@@ -4,6 +4,7 @@ mod fragments;
 
 use std::{
     collections::{BTreeSet, VecDeque},
+    io::{self, Read, Write},
     net::TcpStream,
     time::Duration,
 };
@@ -39,7 +40,7 @@ const MOST_WAITING: usize = 1000;
 
 /// A connection to a rosbridge server.
 pub struct Rosbridge {
-    socket: WebSocket<TcpStream>,
+    socket: WebSocket<DeadlineStream>,
     address: String,
     clock: WallClock,
     fragments: Fragments,
@@ -70,15 +71,17 @@ impl Rosbridge {
             source,
         };
         stream
-            .set_read_timeout(Some(PATIENCE))
-            .map_err(unreachable)?;
-        stream
             .set_write_timeout(Some(WRITE_PATIENCE))
             .map_err(unreachable)?;
         let config = WebSocketConfig::default()
             .max_message_size(Some(MOST_BYTES))
             .max_frame_size(Some(MOST_BYTES))
             .max_write_buffer_size(MOST_BYTES);
+        let stream = DeadlineStream {
+            stream,
+            clock,
+            deadline: clock.now() + PATIENCE,
+        };
         let url = format!("ws://{address}/");
         let (socket, _) =
             client_with_config(url, stream, Some(config)).map_err(|error| match error {
@@ -133,15 +136,7 @@ impl Rosbridge {
 
     /// The next thing that the server sends until the deadline.
     fn read(&mut self, deadline: Duration) -> Result<Option<Incoming>, TransportError> {
-        let wait = self.clock.until(deadline);
-        if wait.is_zero() {
-            return Ok(None);
-        }
-        let wait = Some(wait.max(SHORTEST_WAIT));
-        let stream = self.socket.get_ref();
-        stream
-            .set_read_timeout(wait)
-            .map_err(|error| lost(&Error::Io(error)))?;
+        self.socket.get_mut().deadline = deadline;
         match self.socket.read() {
             Ok(Message::Text(text)) => Ok(Some(self.understand(text.as_str()))),
             Ok(Message::Close(_)) => Err(TransportError::Lost("the server has closed it".into())),
@@ -156,36 +151,72 @@ impl Rosbridge {
     }
 
     fn understand(&mut self, text: &str) -> Incoming {
-        let Ok(mut json) = serde_json::from_str::<Json>(text) else {
-            self.nonsense += 1;
-            return Incoming::Other;
-        };
-        match json.get("op").and_then(Json::as_str) {
-            Some("publish") => {
-                let message = json.get_mut("msg").map(Json::take);
-                let topic = json.get("topic").and_then(Json::as_str);
-                if let (Some(topic), Some(message)) = (topic, message) {
-                    return Incoming::Message(Received {
-                        topic: topic.to_owned(),
-                        message,
-                        at: self.clock.now(),
-                    });
-                }
-                self.nonsense += 1;
-            }
-            // A message cut to pieces is none that is cut to pieces itself.
-            Some("fragment") => match self.fragments.add(&json) {
-                Ok(Some(whole)) if !whole.contains("\"fragment\"") => {
-                    return self.understand(&whole);
-                }
-                Ok(None) => {}
-                Ok(Some(_)) | Err(()) => self.nonsense += 1,
+        let understood = match serde_json::from_str::<Json>(text) {
+            Ok(json) if operation(&json) == Some("fragment") => match self.fragments.add(&json) {
+                Ok(Some(whole)) => serde_json::from_str(&whole)
+                    .ok()
+                    .and_then(|json| self.sort(json)),
+                Ok(None) => Some(Incoming::Other),
+                Err(()) => None,
             },
-            Some("service_response") => return Incoming::Answer(json),
-            Some("status") => {}
-            Some(_) | None => self.nonsense += 1,
+            Ok(json) => self.sort(json),
+            Err(_) => None,
+        };
+        understood.unwrap_or_else(|| {
+            self.nonsense += 1;
+            Incoming::Other
+        })
+    }
+
+    /// What a whole message is; none if that makes no sense.
+    fn sort(&self, mut json: Json) -> Option<Incoming> {
+        match operation(&json)? {
+            "publish" => {
+                let message = json.get_mut("msg")?.take();
+                Some(Incoming::Message(Received {
+                    topic: json.get("topic")?.as_str()?.to_owned(),
+                    message,
+                    at: self.clock.now(),
+                }))
+            }
+            "service_response" => Some(Incoming::Answer(json)),
+            "status" => Some(Incoming::Other),
+            _ => None,
         }
-        Incoming::Other
+    }
+}
+
+fn operation(json: &Json) -> Option<&str> {
+    json.get("op")?.as_str()
+}
+
+/// A stream of which nothing is read after a deadline, even if bytes come one by one.
+#[derive(Debug)]
+struct DeadlineStream {
+    stream: TcpStream,
+    clock: WallClock,
+    deadline: Duration,
+}
+
+impl Read for DeadlineStream {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let wait = self.clock.until(self.deadline);
+        if wait.is_zero() {
+            return Err(io::ErrorKind::WouldBlock.into());
+        }
+        self.stream
+            .set_read_timeout(Some(wait.max(SHORTEST_WAIT)))?;
+        self.stream.read(bytes)
+    }
+}
+
+impl Write for DeadlineStream {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
     }
 }
 

@@ -56,7 +56,7 @@ fn stopped_by(trouble: Trouble, is_expected: fn(&StopReason) -> bool) {
             std::thread::sleep(std::time::Duration::from_millis(50));
             server.robot().angles["left_s0"] == before
         };
-        if !matches!(trouble, Trouble::Closed | Trouble::HalfOpen) {
+        if !matches!(trouble, Trouble::Closed | Trouble::HalfOpen | Trouble::Drip) {
             wait_until(rests);
         }
         assert_eq!(server.robot().dropped, 0);
@@ -187,7 +187,12 @@ fn a_shadow_says_when_the_connection_is_lost() {
 #[test]
 fn old_states_stop_it() {
     let is_stale = |reason: &StopReason| matches!(reason, StopReason::StaleState { .. });
-    for trouble in [Trouble::Frozen, Trouble::Delayed, Trouble::NotANumber] {
+    for trouble in [
+        Trouble::Frozen,
+        Trouble::Delayed,
+        Trouble::NotANumber,
+        Trouble::Drip,
+    ] {
         stopped_by(trouble, is_stale);
     }
 }

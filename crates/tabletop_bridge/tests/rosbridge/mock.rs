@@ -2,6 +2,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
+    io::Write as _,
     net::{TcpListener, TcpStream},
     sync::{
         Arc, Mutex, MutexGuard,
@@ -36,6 +37,8 @@ pub enum Trouble {
     Closed,
     /// Nothing is read or written any more, and the connection stays.
     HalfOpen,
+    /// A long message comes byte by byte.
+    Drip,
     /// Commands have no effect.
     Stuck,
     /// The button is pressed.
@@ -180,6 +183,16 @@ fn serve(
         if trouble == Trouble::HalfOpen {
             thread::sleep(Duration::from_millis(5));
             continue;
+        }
+        if trouble == Trouble::Drip {
+            // The head of a text of a megabyte, unmasked, and its first bytes.
+            let stream = session.socket.get_mut();
+            stream.write_all(&[0x81, 127, 0, 0, 0, 0, 0, 0x10, 0, 0])?;
+            while !is_over.load(Ordering::SeqCst) {
+                stream.write_all(b" ")?;
+                thread::sleep(Duration::from_millis(1));
+            }
+            return Ok(());
         }
         while let Some(wait) = due
             .checked_duration_since(Instant::now())
