@@ -1,5 +1,4 @@
 //! The shipped profiles and the descriptions of the same robots.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use tabletop_bridge::BridgeProfile;
 use tabletop_kinematics::RobotModel;
