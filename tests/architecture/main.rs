@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 39] = [
+const RULES: [Rule; 40] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -103,6 +103,10 @@ const RULES: [Rule; 39] = [
     Rule::new(
         "tabletop_camera",
         &["tabletop_core", "tabletop_geometry", "tabletop_history"],
+    ),
+    Rule::new(
+        "tabletop_vision",
+        &["tabletop_camera", "tabletop_core", "tabletop_geometry"],
     ),
     Rule::new(
         "tabletop_recorder",

@@ -93,6 +93,9 @@ fn main() {
             for seed in 0..count {
                 let sample = task.sample(own, seed);
                 let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+                if own.light > 0.0 {
+                    eyes = eyes.in_unknown_light();
+                }
                 // The least of some times, since other programs run meanwhile.
                 let mut looks = (0..REPEATED).map(|_| {
                     eyes.forget();

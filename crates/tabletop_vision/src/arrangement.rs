@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
-    guess::{Candidate, GOOD_SCORE, Guess},
+    guess::{Candidate, Guess},
     known::{KnownObject, Placement},
     refine::{FINE, Refinement, Stage, TRACKING},
     residual::{OUTLIER, Residual, Trial, loss, rows},
@@ -25,6 +25,9 @@ const STILL_SUPPORTED: f32 = 0.003;
 const BAD: f32 = 150.0;
 /// The largest height, in units, on which objects that nothing is known about are looked for.
 const HIGHEST: f32 = 4.0;
+/// The part of what it should explain above which an object is placed without a look at other places, at first and when that was not good.
+const GOOD_SCORE: f32 = 0.85;
+const THOROUGH: f32 = 0.98;
 /// The loss of a pixel, on average, below which an object is explained well, without noise.
 const GOOD: f32 = 25.0;
 /// Largest number of attempts to find a better arrangement.
@@ -46,6 +49,8 @@ pub(crate) struct Arrangement<'a, 'p> {
     pub noise: f32,
     /// The loss that a support may add, as a part of what the object explains: else it is in the air.
     allowance: f32,
+    /// The part of what it should explain above which an object is placed without a look at other places.
+    enough: f32,
 }
 
 /// The placements, to come back to.
@@ -70,6 +75,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             squares: vec![0.0; residual.seen().depth.len()],
             noise: 0.0,
             allowance: SUPPORTED,
+            enough: GOOD_SCORE,
             residual,
         };
         arrangement.compare(&arrangement.residual.whole());
@@ -97,14 +103,6 @@ impl<'a, 'p> Arrangement<'a, 'p> {
 
     pub fn square(&self, pixel: usize) -> f32 {
         self.squares[pixel]
-    }
-
-    pub fn class(&self, pixel: usize) -> u8 {
-        self.classes[pixel]
-    }
-
-    pub fn color(&self, object: usize) -> u8 {
-        self.colors[object]
     }
 
     /// The solids of the placed objects that may be seen in a window, but for one.
@@ -176,8 +174,30 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         })
     }
 
+    /// Finds all objects, if it is known of none where it was before; else follows those.
+    pub fn begin(&mut self, before: &[Option<Placement>]) {
+        if before.iter().all(Option::is_none) {
+            self.arrange(&mut || 1.0);
+        } else {
+            self.follow(before);
+        }
+    }
+
+    /// Begins with objects where they were found in another light.
+    pub fn begin_again(&mut self, found: &[Option<Placement>]) {
+        for (i, placement) in found.iter().enumerate() {
+            self.place(i, *placement);
+        }
+        self.arrange(&mut || 1.0);
+    }
+
+    /// The solids of all objects.
+    pub fn solids(&self) -> Vec<DrawnSolid> {
+        self.others(None, &self.residual.whole())
+    }
+
     /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere.
-    pub fn follow(&mut self, before: &[Option<Placement>]) {
+    fn follow(&mut self, before: &[Option<Placement>]) {
         self.allowance = STILL_SUPPORTED;
         for (i, placement) in before.iter().enumerate() {
             self.place(i, *placement);
@@ -201,7 +221,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// Finds all objects without a placement, and settles all.
-    pub fn arrange(&mut self, chance: &mut impl FnMut() -> f32) {
+    fn arrange(&mut self, chance: &mut impl FnMut() -> f32) {
         self.find_all(chance);
         self.settle_all(1, false);
         if self.placements.contains(&None) {
@@ -222,9 +242,6 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     fn find_all(&mut self, chance: &mut impl FnMut() -> f32) {
         let mut candidates: Vec<Option<Option<Candidate>>> = vec![None; self.objects.len()];
         while let Some((object, placement)) = self.next_found(&mut candidates, chance) {
-            if std::env::var("DBG").is_ok() {
-                eprintln!("place {object} {:?} {}", placement.location, placement.yaw);
-            }
             self.place(object, Some(placement));
             let window = self.windows[object].clone().unwrap_or_default();
             let wide = window.widened(4, self.residual.size());
@@ -268,14 +285,8 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             let Some(candidate) = candidates[i].as_ref().and_then(Option::as_ref) else {
                 continue;
             };
-            if candidate.score > GOOD_SCORE {
+            if candidate.score > self.enough {
                 return Some((i, candidate.placement));
-            }
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "  cand {i} {:?} {} {}",
-                    candidate.placement.location, candidate.placement.yaw, candidate.score
-                );
             }
             let score = candidate.score * chance();
             if score > LEAST_SCORE && best.is_none_or(|best| score > best.2) {
@@ -319,6 +330,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             Some((placement, heights.map(|height| height.max(0.0)).collect()))
         });
         Some(Guess {
+            enough: self.enough,
             others: placed.collect(),
             neighbours: match known.is_fixed() {
                 true => Vec::new(),
@@ -393,12 +405,6 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         }
         if is_last {
             settled = refinement.polished(settled, 0.004).0;
-        }
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "settle {object} {:?} {} -> {:?}",
-                before.location, trial.gain, settled.location
-            );
         }
         self.place(object, Some(settled));
         settled.location.distance(before.location) + (settled.yaw - before.yaw).abs()
@@ -516,6 +522,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             for &i in &away {
                 self.place(i, None);
             }
+            self.enough = THOROUGH;
             self.arrange(&mut || match attempt {
                 0 => 1.0,
                 _ => random.between((0.4, 1.0)),

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Scene};
-use tabletop_core::{Picture, Table};
+use tabletop_core::{Light, Picture, Table};
 use tabletop_geometry::Pose;
 
 use crate::{
@@ -10,6 +10,7 @@ use crate::{
     clutter::{Clutter, clutter},
     identity::keep_identities,
     known::{KnownObject, YawSymmetry},
+    lighting::estimated,
     refine::{Refinement, deviations},
     residual::{OUTLIER, Residual},
 };
@@ -21,6 +22,7 @@ pub struct Eyes {
     camera: Camera,
     table: Table,
     poses: Vec<Option<Pose>>,
+    is_light_unknown: bool,
 }
 
 /// What is in a picture besides the table and the objects, and known: it is drawn, and not estimated.
@@ -39,6 +41,8 @@ pub struct Percept {
     pub objects: Vec<ObjectPercept>,
     /// What is in the picture and is not known, largest first.
     pub clutter: Vec<Clutter>,
+    /// The light: that of the camera, unless it is not known.
+    pub light: Light,
     /// Standard deviation of the noise in a part of a pixel, in grey levels.
     pub noise: f32,
 }
@@ -83,6 +87,8 @@ const HIDDEN: f32 = 0.03;
 const SURE_VISIBLE: f32 = 0.12;
 /// Step of the derivatives for uncertainties, in units: half a pixel.
 const STEP: f32 = 0.05;
+/// Number of times that the light is estimated with the objects in their places.
+const RELIGHTINGS: usize = 2;
 /// Variance of a part of a pixel that is there without noise: colours are whole numbers, and edges are smoothed by four samples.
 const ROUNDING: f32 = 1.0;
 
@@ -94,7 +100,15 @@ impl Eyes {
             objects,
             camera,
             table,
+            is_light_unknown: false,
         }
+    }
+
+    /// The same eyes, which do not know the light, and estimate it with each picture.
+    #[must_use]
+    pub const fn in_unknown_light(mut self) -> Self {
+        self.is_light_unknown = true;
+        self
     }
 
     /// Forgets where objects were.
@@ -125,35 +139,29 @@ impl Eyes {
             figures: scenery.figures.clone(),
             markers: Vec::new(),
         };
-        let t0 = std::time::Instant::now();
-        let rep = |what: &str| {
-            if std::env::var("TIM").is_ok() {
-                use crate::residual::*;
-                use std::sync::atomic::Ordering::Relaxed;
-                eprintln!(
-                    "{what} {:.2} ms trials {} draws {} keeps {}",
-                    t0.elapsed().as_secs_f64() * 1e3,
-                    TRIALS.swap(0, Relaxed),
-                    DRAWS.swap(0, Relaxed),
-                    KEEPS.swap(0, Relaxed)
-                );
-            }
-        };
-        let residual = Residual::new(picture, &ground, self.camera);
-        let mut arrangement = Arrangement::empty(&self.objects, residual);
-        rep("empty");
         let known = self.objects.iter().zip(&self.poses);
         let before: Vec<_> = known
             .map(|(object, pose)| pose.map(|pose| object.placement(pose)))
             .collect();
-        if before.iter().all(Option::is_none) {
-            arrangement.arrange(&mut || 1.0);
-        } else {
-            arrangement.follow(&before);
+        if self.is_light_unknown && before.iter().all(Option::is_none) {
+            self.camera.light = estimated(picture, &ground, &self.camera, &Light::default());
         }
-        rep("settled");
+        let residual = Residual::new(picture, &ground, self.camera);
+        let mut arrangement = Arrangement::empty(&self.objects, residual);
+        arrangement.begin(&before);
+        if self.is_light_unknown {
+            for _ in 0..RELIGHTINGS {
+                let mut scene = ground.clone();
+                scene.solids.extend(arrangement.solids());
+                let light = estimated(picture, &scene, &self.camera, &Light::default());
+                self.camera.light = light;
+                let placements = arrangement.placements.clone();
+                let residual = Residual::new(picture, &ground, self.camera);
+                arrangement = Arrangement::empty(&self.objects, residual);
+                arrangement.begin_again(&placements);
+            }
+        }
         arrangement.reconsider();
-        rep("reconsidered");
         let percepts = (0..self.objects.len()).map(|i| {
             let seen = percept(&mut arrangement, i);
             let pose = seen.pose.or(self.poses[i]);
@@ -166,13 +174,13 @@ impl Eyes {
             arrangement.square(i) > least
         });
         let noise = arrangement.noise.sqrt();
-        rep("percept");
         for (own, seen) in self.poses.iter_mut().zip(&objects) {
             *own = seen.pose;
         }
         Percept {
             objects,
             clutter,
+            light: self.camera.light,
             noise,
         }
     }
@@ -185,6 +193,7 @@ impl Eyes {
         Percept {
             objects: self.poses.iter().map(hidden).collect(),
             clutter: Vec::new(),
+            light: self.camera.light,
             noise: 0.0,
         }
     }

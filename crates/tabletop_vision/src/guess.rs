@@ -5,7 +5,7 @@ use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
     known::{KnownObject, Placement, StandingSolid},
-    refine::{COARSE, Refinement, Stage},
+    refine::{COARSE, FINE, Refinement, Stage},
     residual::{OUTLIER, Residual, Trial},
     segment::Blob,
     support::has_room,
@@ -20,8 +20,8 @@ const LEAST_BLOB: usize = 4;
 const HEIGHT_STEP: f32 = 0.6;
 /// Angle between the yaws that are tried, in rad.
 const YAW_STEP: f32 = 0.4;
-/// The part of what it should explain above which a candidate is right.
-pub(crate) const GOOD_SCORE: f32 = 0.85;
+/// Number of those that are refined more, if none explains enough.
+const FINALISTS: usize = 2;
 /// Number of heights near a free one that are tried.
 const SUPPORTS: usize = 3;
 /// Number of guesses that are refined for each seed.
@@ -41,6 +41,8 @@ pub(crate) struct Candidate {
 pub(crate) struct Guess<'g, 'a, 'p> {
     pub residual: &'g mut Residual<'p>,
     pub object: &'a KnownObject,
+    /// The part of what it should explain above which a guess is right.
+    pub enough: f32,
     /// The pixels that may show it, with their losses.
     pub blobs: Vec<(Blob, f32)>,
     /// The other objects' solids, and the windows in which they may be seen.
@@ -101,37 +103,45 @@ impl<'p> Guess<'_, '_, 'p> {
                 picked.push((i, placement));
             }
         }
-        let mut best: Option<(usize, Placement, Trial, f32)> = None;
+        let mut found: Vec<(usize, Placement, Trial)> = Vec::new();
         for (i, placement) in picked {
             self.keep_about(&seeds[i]);
             let Some((placement, trial)) = self.supported(&placement, 1, &COARSE) else {
                 continue;
             };
-            let score = seeds[i].score(&trial);
-            let is_possible = has_room(self.object, &placement, &self.taken);
-            if is_possible && best.as_ref().is_none_or(|best| score > best.3) {
-                best = Some((i, placement, trial, score));
-            }
-            if score > GOOD_SCORE {
-                break;
+            if has_room(self.object, &placement, &self.taken) {
+                found.push((i, placement, trial));
+                if seeds[i].score(&trial) > self.enough {
+                    return self.candidate(&seeds[i], &placement, &trial);
+                }
             }
         }
-        let (i, placement, trial, score) = best?;
-        if score < GOOD_SCORE && self.heights.len() > 1 {
+        let score = |found: &(usize, Placement, Trial)| seeds[found.0].score(&found.2);
+        found.sort_by(|a, b| score(b).total_cmp(&score(a)));
+        found.truncate(FINALISTS);
+        let mut best: Option<(usize, Placement, Trial)> = None;
+        for (i, placement, _) in found {
             self.keep_about(&seeds[i]);
-            if let Some((other, other_trial)) = self.at_other_height(&placement)
-                && other_trial.gain < trial.gain
-                && has_room(self.object, &other, &self.taken)
-            {
-                return self.candidate(&seeds[i], &other, &other_trial);
+            let other = match self.heights.len() > 1 {
+                true => self.at_other_height(&placement),
+                false => None,
+            };
+            let same = self.supported(&placement, 1, &FINE);
+            for (placement, trial) in other.into_iter().chain(same) {
+                let own = (i, placement, trial);
+                let is_better = best.as_ref().is_none_or(|best| score(&own) > score(best));
+                if is_better && has_room(self.object, &placement, &self.taken) {
+                    best = Some(own);
+                }
             }
         }
+        let (i, placement, trial) = best?;
         self.candidate(&seeds[i], &placement, &trial)
     }
 
     fn at_other_height(&mut self, placement: &Placement) -> Option<(Placement, Trial)> {
         let (free, _) = self.refinement().refined(*placement, &COARSE);
-        self.supported(&free, SUPPORTS, &COARSE[1..])
+        self.supported(&free, SUPPORTS, &FINE)
     }
 
     fn candidate(&self, seed: &Seed, placement: &Placement, trial: &Trial) -> Option<Candidate> {

@@ -42,6 +42,7 @@ mod eyes;
 mod guess;
 mod identity;
 mod known;
+mod lighting;
 mod normal;
 mod refine;
 mod residual;

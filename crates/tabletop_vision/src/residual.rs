@@ -77,7 +77,6 @@ impl<'p> Residual<'p> {
 
     /// Keeps these solids over the ground, within a window; what is tried is compared there.
     pub fn keep(&mut self, solids: &[DrawnSolid], window: &PictureWindow) {
-        KEEPS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.layers.keep(solids, window);
         self.window = window.intersection(&self.layers.whole());
         let drawn = self.layers.draw(&[], &self.window);
@@ -103,7 +102,6 @@ impl<'p> Residual<'p> {
             return trial;
         };
         let window = window.intersection(&self.window);
-        TRIALS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let drawn = self.layers.draw(solids, &window);
         for row in rows(&window, self.seen.width) {
             let parts = 3 * row.start..3 * row.end;
@@ -124,7 +122,6 @@ impl<'p> Residual<'p> {
 
     /// Draws solids over what is kept. Valid in the part of the window that is kept.
     pub fn draw(&mut self, solids: &[DrawnSolid], window: &PictureWindow) -> &Picture {
-        DRAWS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.layers.draw(solids, window)
     }
 }
@@ -148,7 +145,3 @@ pub(crate) fn square_of(one: &[u8], other: &[u8]) -> f32 {
     let [red, green, blue] = [difference(0), difference(1), difference(2)];
     (red * red + green * green + blue * blue) as f32
 }
-
-pub static TRIALS: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
-pub static DRAWS: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
-pub static KEEPS: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);

@@ -212,7 +212,7 @@ impl TaskScene {
                 let reach = radius(object).max(room(&object.id));
                 let mut is_placed = false;
                 for _ in 0..50 {
-                    let at = Vec2::new(random.between((-5.5, 5.5)), random.between((-4.8, 0.5)));
+                    let at = Vec2::new(random.between((-5.5, 5.5)), random.between((-4.8, 0.0)));
                     if taken
                         .iter()
                         .all(|(other, room)| other.distance(at) > room + reach)
@@ -228,8 +228,26 @@ impl TaskScene {
                     continue 'again;
                 }
             }
-            break;
+            self.attach(objects, attached, random);
+            // About where the arms reach.
+            let is_seen = |object: &ObjectSpec| {
+                let bounds = object.shape.bounds(object.pose);
+                bounds.low.y > -5.4
+                    && bounds.high.y < 0.5
+                    && bounds.low.x.abs().max(bounds.high.x.abs()) < 7.0
+            };
+            if objects.iter().all(is_seen) {
+                return;
+            }
         }
+    }
+
+    fn attach(
+        &self,
+        objects: &mut [ObjectSpec],
+        attached: &[(&str, &str, [f32; 3])],
+        random: &mut Random,
+    ) {
         for (id, to, offset) in attached {
             let base = objects.iter().find(|object| object.id == *to).unwrap().pose;
             let turn = Quat::from_rotation_z(random.between((-0.1, 0.1)));
