@@ -23,6 +23,8 @@ pub(crate) struct Placed {
 pub const TOUCH: f32 = 0.06;
 /// Largest overhang of an edge, in units, that does not count as support.
 const EDGE: f32 = 0.03;
+/// Step, in units, in which distances of supports are compared: of those that are as near, the first by id comes first, however a demonstration trembles.
+const AS_NEAR: f32 = 0.1;
 /// Largest gap between objects, as seen from above, that are not beside each other, in units.
 const BESIDE: f32 = 1e-3;
 
@@ -64,7 +66,10 @@ impl Arrangement {
         let mut supports: Vec<_> = self
             .others(id)
             .filter(|(_, other)| object.rests_on(other))
-            .map(|(other, placed)| (placed.across(object.pose.location), other))
+            .map(|(other, placed)| {
+                let distance = placed.across(object.pose.location);
+                ((distance / AS_NEAR).round(), other)
+            })
             .collect();
         supports.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(b.1)));
         supports.into_iter().map(|(_, id)| id).collect()
