@@ -20,9 +20,10 @@ use serde_json::{Value, json};
 use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_controller::Sight;
 use tabletop_core::{
-    HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
-    Table, WriteCommand as _,
+    HeadCamera, Light, ObjectSpec, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec,
+    StepApp as _, Table, WriteCommand as _,
 };
+use tabletop_geometry::Pose;
 use tabletop_kinematics::ModelError;
 use tabletop_planner::{Before, PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{
@@ -59,6 +60,23 @@ pub struct Multiplication {
     seed: u64,
     /// That of the recording's files.
     recorded: Fingerprint,
+}
+
+/// The beginning of a demonstration that is made from another.
+#[derive(Clone, Debug)]
+pub struct VariedBeginning {
+    /// The scene.
+    pub scene: SceneSpec,
+    /// The objects of the scene, with their poses.
+    pub objects: Vec<ObjectSpec>,
+    /// The objects that take the roles of the task.
+    pub binding: Binding,
+    /// The pose of the head camera, if it is not on the robot's head.
+    pub mount: Option<Pose>,
+    /// The light in its pictures.
+    pub light: Light,
+    /// The seed of the robot's search for paths.
+    seed: u64,
 }
 
 /// A robot that demonstrates.
@@ -226,12 +244,11 @@ impl Multiplication {
     pub fn make(&self, number: u64, folder: &Path) -> Result<Made, MultiplyError> {
         let mut made = Made::default();
         for attempt in 0..TRIES {
-            let mut random = Random::new(self.seed_of(number, attempt));
-            let Some(scene) = self.varying().varied(&mut random) else {
+            let Some(beginning) = self.beginning(number, attempt)? else {
                 made.dropped.push(Dropped::NoRoom);
                 continue;
             };
-            match self.show(scene, number, attempt, &mut random, folder)? {
+            match self.show(beginning, number, attempt, folder)? {
                 Ok(()) => {
                     self.requirements.write(folder)?;
                     made.is_kept = true;
@@ -276,20 +293,65 @@ impl Multiplication {
         mixed
     }
 
-    /// Demonstrates it once, and records that.
-    fn show(
+    /// The task that is demonstrated.
+    pub fn task(&self) -> &Task {
+        &self.task
+    }
+
+    /// The variation from one demonstration to the next.
+    pub fn variation(&self) -> Variation {
+        self.variation
+    }
+
+    /// The seed of all differences.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The beginning of an attempt at the demonstration of this number. `None` if there is no room for everything.
+    ///
+    /// # Errors
+    /// The objects do not fit.
+    pub fn beginning(
         &self,
-        scene: SceneSpec,
         number: u64,
         attempt: u64,
-        random: &mut Random,
-        folder: &Path,
-    ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
+    ) -> Result<Option<VariedBeginning>, MultiplyError> {
+        let random = &mut Random::new(self.seed_of(number, attempt));
+        let Some(scene) = self.varying().varied(random) else {
+            return Ok(None);
+        };
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         let binding = self.late.bind(&self.task, &self.requirements, &objects)?;
         let mount = self.variation.mount(&scene.table, random);
         let seed = random.bits();
         let light = self.variation.light(random);
+        Ok(Some(VariedBeginning {
+            scene,
+            objects,
+            binding,
+            mount,
+            light,
+            seed,
+        }))
+    }
+
+    /// Demonstrates it once, and records that.
+    fn show(
+        &self,
+        beginning: VariedBeginning,
+        number: u64,
+        attempt: u64,
+        folder: &Path,
+    ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
+        let VariedBeginning {
+            scene,
+            binding,
+            mount,
+            light,
+            seed,
+            ..
+        } = beginning;
         let mut header = serde_json::Map::new();
         header.insert(
             MULTIPLIED.into(),

@@ -1,0 +1,226 @@
+//! Convolutions, forward and backward.
+//!
+//! Each output number has an accumulator of its own, to which products are added one after the other, in the order of the inputs. The compiler
+//! turns neighbouring accumulators into vectors and fuses nothing, so the bits are those of the plain loop on every processor.
+
+use std::ops::Range;
+
+use tabletop_core::Random;
+
+use crate::planes::Planes;
+
+/// Outputs of a convolution are a multiple of this.
+pub(crate) const BLOCK: usize = 16;
+/// Output planes, and neighbouring pixels, that are summed at once: as many as a processor with 16 vectors of four has room for.
+const TILE: [usize; 2] = [4, 12];
+/// Pixels over which a weight's gradient is summed at a time, so that they stay in the nearest cache.
+const CHUNK: usize = 256;
+
+/// A convolution, 3×3 or 1×1, with a bias. Its weights and biases are a part of the network's parameters.
+#[derive(Clone, Debug)]
+pub(crate) struct Convolution {
+    name: &'static str,
+    inputs: usize,
+    pub outputs: usize,
+    /// Width and height of the kernel: 3 or 1.
+    side: usize,
+    /// The first of its parameters: weights by output, input, row and column, then biases.
+    first: usize,
+}
+
+impl Convolution {
+    pub fn new(
+        name: &'static str,
+        [inputs, outputs]: [usize; 2],
+        side: usize,
+        parameters: &mut Range<usize>,
+    ) -> Self {
+        debug_assert!(outputs.is_multiple_of(BLOCK) && (side == 1 || side == 3));
+        let first = parameters.end;
+        let new = Self {
+            name,
+            inputs,
+            outputs,
+            side,
+            first,
+        };
+        parameters.end = new.biases().end;
+        new
+    }
+
+    fn taps(&self) -> usize {
+        self.side * self.side
+    }
+
+    fn weights(&self) -> Range<usize> {
+        self.first..self.first + self.outputs * self.inputs * self.taps()
+    }
+
+    fn biases(&self) -> Range<usize> {
+        let first = self.weights().end;
+        first..first + self.outputs
+    }
+
+    /// Its tensors in a file: their names, shapes and parameters.
+    pub fn tensors(&self) -> [(String, Vec<usize>, Range<usize>); 2] {
+        let kernel = vec![self.outputs, self.inputs, self.side, self.side];
+        [
+            (format!("{}.weight", self.name), kernel, self.weights()),
+            (format!("{}.bias", self.name), vec![self.outputs], self.biases()),
+        ]
+    }
+
+    /// Draws weights that keep the size of numbers from a layer to the next (He et al., Delving deep into rectifiers, 2015).
+    pub fn draw(&self, parameters: &mut [f32], random: &mut Random) {
+        let most = (6.0 / (self.inputs * self.taps()) as f32).sqrt();
+        for weight in &mut parameters[self.weights()] {
+            *weight = random.between((-most, most));
+        }
+    }
+
+    pub fn forward(&self, parameters: &[f32], input: &Planes) -> Planes {
+        let weights = &parameters[self.weights()];
+        let terms = self.inputs * self.taps();
+        let weight = |output: usize, input: usize, tap: usize| {
+            weights[output * terms + input * self.taps() + tap]
+        };
+        let packed = self.packed([self.inputs, self.outputs], weight);
+        let mut output = Planes::new(self.outputs, input.width(), input.height());
+        self.convolve(&packed, &parameters[self.biases()], input, &mut output);
+        output
+    }
+
+    /// The gradient of the input, from that of the output.
+    pub fn backward(&self, parameters: &[f32], gradient: &Planes) -> Planes {
+        let weights = &parameters[self.weights()];
+        let terms = self.inputs * self.taps();
+        // Input and output change places, and the kernel is turned by 180°.
+        let weight = |input: usize, output: usize, tap: usize| {
+            weights[output * terms + input * self.taps() + self.taps() - 1 - tap]
+        };
+        let packed = self.packed([self.outputs, self.inputs], weight);
+        let mut input = Planes::new(self.inputs, gradient.width(), gradient.height());
+        self.convolve(&packed, &vec![0.0; self.inputs], gradient, &mut input);
+        input
+    }
+
+    /// Weights in the order in which they are used: by block of outputs, input, tap and output.
+    fn packed(
+        &self,
+        [inputs, outputs]: [usize; 2],
+        weight: impl Fn(usize, usize, usize) -> f32,
+    ) -> Vec<f32> {
+        let [rows, _] = TILE;
+        let mut packed = Vec::with_capacity(inputs * outputs * self.taps());
+        for block in (0..outputs).step_by(rows) {
+            for input in 0..inputs {
+                for tap in 0..self.taps() {
+                    packed.extend((block..block + rows).map(|output| weight(output, input, tap)));
+                }
+            }
+        }
+        packed
+    }
+
+    fn convolve(&self, packed: &[f32], biases: &[f32], input: &Planes, output: &mut Planes) {
+        match self.side {
+            1 => convolve::<1>(packed, biases, input, output),
+            _ => convolve::<3>(packed, biases, input, output),
+        }
+        output.clear_borders();
+    }
+
+    /// Adds the gradient of weights and biases to `sum`, which is that of all parameters.
+    pub fn add_gradient(&self, input: &Planes, gradient: &Planes, sum: &mut [f32]) {
+        for (bias, plane) in sum[self.biases()].iter_mut().zip(gradient.each()) {
+            *bias += plane.iter().sum::<f32>();
+        }
+        let weights = &mut sum[self.weights()];
+        match self.side {
+            1 => add_gradient::<1>(input, gradient, weights),
+            _ => add_gradient::<3>(input, gradient, weights),
+        }
+    }
+}
+
+fn convolve<const SIDE: usize>(
+    packed: &[f32],
+    biases: &[f32],
+    input: &Planes,
+    output: &mut Planes,
+) {
+    const ROWS: usize = TILE[0];
+    const PIXELS: usize = TILE[1];
+    let (stride, first, pitch) = (output.stride(), output.first(), output.pitch());
+    let corner = (first - 1 - pitch) + (3 - SIDE) / 2 * (pitch + 1);
+    let in_block = packed.len() / biases.len() * ROWS;
+    let blocks = packed.chunks_exact(in_block).zip(biases.as_chunks().0);
+    let span = output.span();
+    let numbers = output.numbers_mut();
+    for pixel in (0..span).step_by(PIXELS) {
+        for (block, (weights, biases)) in blocks.clone().enumerate() {
+            let biases: &[f32; ROWS] = biases;
+            let mut sums = biases.map(|bias| [bias; PIXELS]);
+            let mut weights = weights.as_chunks::<ROWS>().0.iter();
+            for plane in input.each() {
+                for row in 0..SIDE {
+                    let from = corner + pixel + row * pitch;
+                    let taps = plane[from..from + PIXELS + SIDE - 1].array_windows::<PIXELS>();
+                    for (shifted, weights) in taps.zip(&mut weights) {
+                        for (sums, weight) in sums.iter_mut().zip(weights) {
+                            for (sum, number) in sums.iter_mut().zip(shifted) {
+                                *sum += weight * number;
+                            }
+                        }
+                    }
+                }
+            }
+            for (row, sums) in sums.iter().enumerate() {
+                let at = (block * ROWS + row) * stride + first + pixel;
+                numbers[at..at + PIXELS].copy_from_slice(sums);
+            }
+        }
+    }
+}
+
+fn add_gradient<const SIDE: usize>(input: &Planes, gradient: &Planes, sum: &mut [f32]) {
+    let (first, pitch, span) = (input.first(), input.pitch(), input.span());
+    let corner = (first - 1 - pitch) + (3 - SIDE) / 2 * (pitch + 1);
+    let terms = input.count() * SIDE * SIDE;
+    let planes: Vec<_> = gradient.each().collect();
+    let mut turned = [[0.0; BLOCK]; CHUNK];
+    for (block, planes) in planes.chunks_exact(BLOCK).enumerate() {
+        // By term and output, so that vectors run along the outputs.
+        let mut sums = vec![[0.0_f32; BLOCK]; terms];
+        for from in (0..span).step_by(CHUNK) {
+            let count = CHUNK.min(span - from);
+            for (output, plane) in planes.iter().enumerate() {
+                let pixels = &plane[first + from..first + from + count];
+                for (turned, number) in turned.iter_mut().zip(pixels) {
+                    turned[output] = *number;
+                }
+            }
+            let mut rows = sums.as_chunks_mut::<SIDE>().0.iter_mut();
+            for plane in input.each() {
+                for (row, sums) in (0..SIDE).zip(&mut rows) {
+                    let at = corner + from + row * pitch;
+                    let taps = plane[at..at + count + SIDE - 1].array_windows::<SIDE>();
+                    let mut now = *sums;
+                    for (gradients, taps) in turned.iter().zip(taps) {
+                        for (sums, tap) in now.iter_mut().zip(taps) {
+                            for (sum, gradient) in sums.iter_mut().zip(gradients) {
+                                *sum += tap * gradient;
+                            }
+                        }
+                    }
+                    *sums = now;
+                }
+            }
+        }
+        for (term, sums) in sums.iter().enumerate() {
+            for (output, number) in sums.iter().enumerate() {
+                sum[(block * BLOCK + output) * terms + term] += number;
+            }
+        }
+    }
+}

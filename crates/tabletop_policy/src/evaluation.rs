@@ -1,0 +1,159 @@
+//! Evaluation: a policy acts in scenes that it has not seen, until it says that the task is done. Nothing moves but what it moves, and that exactly as it
+//! decides.
+
+use bevy::math::{Quat, Vec3};
+use tabletop_camera::Rasterizer;
+use tabletop_episodes::multiplication::VariedBeginning;
+use tabletop_geometry::{Pose, turn_about_z};
+use tabletop_task::{Arrangement, Binding, Symmetry, Task};
+
+use crate::{
+    course::Course,
+    error::PolicyError,
+    policy::{Decision, ObjectPlace, Policy},
+    still_scene::{StillScene, heading},
+};
+
+/// The result of some scenes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evaluation {
+    /// Numbers of the scenes in which the task was done.
+    pub done: Vec<u64>,
+    /// The failure of each other scene.
+    pub failed: Vec<(u64, PolicyFailure)>,
+    /// The distance, in units, of every place at which an object was taken from its origin.
+    pub pick_errors: Vec<f32>,
+    /// Number of moves.
+    pub moves: usize,
+}
+
+/// The failure of a policy in a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PolicyFailure {
+    /// It wanted to take something where nothing is.
+    TookNothing,
+    /// It said that the task is done, and it is not.
+    NotDone,
+    /// It went on for ever.
+    Endless,
+}
+
+/// The largest distance, in units, between an object's origin and the place where a hand that takes it should find it.
+const GRASP: f32 = 0.5;
+/// The largest distance, in units, between where an object is in the end and where it should be: within a quarter of a block's width, a block stands on another.
+const TOLERANCE: f32 = 0.25;
+/// Most objects that look alike whose roles are exchanged.
+const MOST_ALIKE: usize = 4;
+
+impl Policy {
+    /// Does the task in `count` scenes of a course that it has not learned from.
+    ///
+    /// # Errors
+    /// There are no such scenes.
+    pub fn evaluate(&self, course: &Course, count: u64) -> Result<Evaluation, PolicyError> {
+        let mut evaluation = Evaluation::default();
+        let mut rasterizer = Rasterizer::alone();
+        for number in course.count()..course.count() + count {
+            let (beginning, scene) = course.begin(number)?;
+            let result = self.act(course.task(), &beginning, scene, &mut rasterizer, &mut evaluation);
+            match result {
+                Ok(()) => evaluation.done.push(number),
+                Err(failure) => evaluation.failed.push((number, failure)),
+            }
+        }
+        Ok(evaluation)
+    }
+
+    fn act(
+        &self,
+        task: &Task,
+        beginning: &VariedBeginning,
+        mut scene: StillScene,
+        rasterizer: &mut Rasterizer,
+        evaluation: &mut Evaluation,
+    ) -> Result<(), PolicyFailure> {
+        let bindings = bindings(task, beginning);
+        for _ in 0..=2 * task.steps.len() {
+            let picture = scene.picture(rasterizer);
+            match self.decide(&picture, &scene.camera) {
+                Decision::Move { pick, place } => {
+                    let (id, pose, off) = taken(&scene, pick).ok_or(PolicyFailure::TookNothing)?;
+                    scene.put(&id, pose_at(&scene, &id, pose, place));
+                    evaluation.pick_errors.push(off);
+                    evaluation.moves += 1;
+                }
+                Decision::Done => {
+                    let mut bindings = bindings.iter();
+                    let is_done = bindings.any(|binding| scene.shows(task, binding, TOLERANCE));
+                    return is_done.then_some(()).ok_or(PolicyFailure::NotDone);
+                }
+            }
+        }
+        Err(PolicyFailure::Endless)
+    }
+}
+
+/// The object that is taken at a place, its pose, and how far its origin is from there.
+fn taken(scene: &StillScene, pick: ObjectPlace) -> Option<(String, Pose, f32)> {
+    let movable = scene.objects.iter().filter(|object| !object.is_fixed());
+    let distances = movable.map(|object| {
+        let off = object.pose.location.distance(pick.location);
+        (object.id.clone(), object.pose, off)
+    });
+    let nearest = distances.min_by(|one, other| one.2.total_cmp(&other.2));
+    nearest.filter(|(.., off)| *off <= GRASP)
+}
+
+/// The pose of an object at a place: turned as little as makes it look as it should.
+fn pose_at(scene: &StillScene, id: &str, pose: Pose, place: ObjectPlace) -> Pose {
+    let mut objects = scene.objects.iter();
+    let object = objects.find(|object| object.id == id);
+    let symmetry = object.map_or_else(Symmetry::none, |object| Symmetry::of(&object.shape));
+    let turn = heading(&symmetry, pose).yaw().zip(place.yaw);
+    let turn = turn.map_or(0.0, |(now, wanted)| {
+        let period = std::f32::consts::TAU / now.fold as f32;
+        let turn = wanted.angle - now.angle;
+        turn - (turn / period).round() * period
+    });
+    let turn: Quat = turn_about_z(f64::from(turn)).as_quat();
+    Pose::new(place.location, (turn * pose.rotation).normalize())
+}
+
+/// The ways in which objects can take the roles: those that look alike, and carry nothing at first, can take each other's.
+fn bindings(task: &Task, beginning: &VariedBeginning) -> Vec<Binding> {
+    let object = |id: &str| beginning.objects.iter().find(|object| object.id == id);
+    let objects = beginning.objects.iter();
+    let arrangement = Arrangement::new(
+        objects.map(|object| (object.id.as_str(), &object.shape, object.pose)),
+    );
+    let free = |id: &str| arrangement.standing_on(id).is_empty();
+    let mut bindings = vec![beginning.binding.clone()];
+    for (i, role) in task.roles.iter().enumerate() {
+        let later = task.roles[i + 1..].iter().take(MOST_ALIKE);
+        for other in later {
+            let pair = [&role.id, &other.id].map(|role| beginning.binding.object(role));
+            let [Some(one), Some(two)] = pair else {
+                continue;
+            };
+            let shapes = [one, two].map(|id| object(id).map(|object| &object.shape));
+            if shapes[0] == shapes[1] && free(one) && free(two) {
+                for binding in bindings.clone() {
+                    let mut exchanged = binding.clone();
+                    let ids = [&role.id, &other.id].map(|role| binding.0[role].clone());
+                    let [of_role, of_other] = ids;
+                    exchanged.0.insert(role.id.clone(), of_other);
+                    exchanged.0.insert(other.id.clone(), of_role);
+                    bindings.push(exchanged);
+                }
+            }
+        }
+    }
+    bindings
+}
+
+impl Evaluation {
+    /// The mean distance of places where objects were taken from their origins, in units.
+    pub fn mean_pick_error(&self) -> f32 {
+        self.pick_errors.iter().sum::<f32>() / self.pick_errors.len().max(1) as f32
+    }
+}

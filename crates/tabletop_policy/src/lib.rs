@@ -1,0 +1,31 @@
+//! A policy learned from one demonstration: from the head camera's picture to what is to be taken next, and where it is to be put.
+//!
+//! A [`Course`] draws scenes in which the task of a demonstration begins, and shows the task step by step. A [`Training`] makes a [`Policy`] of it, a network that
+//! looks at the picture, warped onto the table, and answers with two marks: pick and place, each with height and yaw; or that the task is done.
+//! The network is our own: a small U-Net with the same bits on every processor and with any number of threads.
+
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
+mod adam;
+mod convolution;
+mod course;
+mod error;
+mod evaluation;
+mod label;
+mod loss_curve;
+mod planes;
+mod policy;
+mod resampling;
+mod still_scene;
+mod table_view;
+mod tensor_file;
+mod training;
+mod unet;
+
+pub use course::Course;
+pub use error::PolicyError;
+pub use evaluation::{Evaluation, PolicyFailure};
+pub use label::Yaw;
+pub use loss_curve::loss_curve;
+pub use policy::{Decision, ObjectPlace, Policy};
+pub use training::{Training, TrainingProgress};
