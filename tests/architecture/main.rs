@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 40] = [
+const RULES: [Rule; 41] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -194,6 +194,17 @@ const RULES: [Rule; 40] = [
             "tabletop_storage",
             "tabletop_task",
             "tabletop_vision",
+        ],
+    ),
+    Rule::new(
+        "tabletop_policy",
+        &[
+            "tabletop_camera",
+            "tabletop_core",
+            "tabletop_episodes",
+            "tabletop_geometry",
+            "tabletop_storage",
+            "tabletop_task",
         ],
     ),
     Rule::new(

@@ -25,7 +25,8 @@ impl Adam {
         let [mean_part, square_part] =
             KEPT.map(|kept| 1.0 - libm::pow(f64::from(kept), number as f64) as f32);
         let moments = self.means.iter_mut().zip(&mut self.squares);
-        for ((parameter, gradient), (mean, square)) in parameters.iter_mut().zip(gradient).zip(moments)
+        for ((parameter, gradient), (mean, square)) in
+            parameters.iter_mut().zip(gradient).zip(moments)
         {
             *mean += (1.0 - KEPT[0]) * (gradient - *mean);
             *square += (1.0 - KEPT[1]) * (gradient * gradient - *square);

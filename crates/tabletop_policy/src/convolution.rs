@@ -66,7 +66,11 @@ impl Convolution {
         let kernel = vec![self.outputs, self.inputs, self.side, self.side];
         [
             (format!("{}.weight", self.name), kernel, self.weights()),
-            (format!("{}.bias", self.name), vec![self.outputs], self.biases()),
+            (
+                format!("{}.bias", self.name),
+                vec![self.outputs],
+                self.biases(),
+            ),
         ]
     }
 
@@ -221,6 +225,94 @@ fn add_gradient<const SIDE: usize>(input: &Planes, gradient: &Planes, sum: &mut 
             for (output, number) in sums.iter().enumerate() {
                 sum[(block * BLOCK + output) * terms + term] += number;
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn random_planes(count: usize, [width, height]: [usize; 2], seed: u64) -> Planes {
+        let random = &mut Random::new(seed);
+        let mut planes = Planes::new(count, width, height);
+        for number in planes.numbers_mut() {
+            *number = random.between((-1.0, 1.0));
+        }
+        planes.clear_borders();
+        planes
+    }
+
+    /// The number of a plane at a pixel; zero beside the plane.
+    fn at(
+        planes: &Planes,
+        plane: usize,
+        column: usize,
+        row: usize,
+        tap: usize,
+        side: usize,
+    ) -> f32 {
+        let (x, y) = (column + tap % side, row + tap / side);
+        let (x, y) = (x.checked_sub(side / 2), y.checked_sub(side / 2));
+        let inside = x
+            .zip(y)
+            .filter(|&(x, y)| x < planes.width() && y < planes.height());
+        inside.map_or(0.0, |(x, y)| planes.get(plane, x, y))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        #[test]
+        fn the_bits_are_those_of_plain_loops(
+            inputs in 1..6_usize,
+            width in 1..40_usize,
+            height in 1..20_usize,
+            side in prop::sample::select(vec![1, 3]),
+            seed: u64,
+        ) {
+            let convolution = Convolution::new("c", [inputs, BLOCK], side, &mut Range::default());
+            let mut parameters = vec![0.1; convolution.biases().end];
+            convolution.draw(&mut parameters, &mut Random::new(seed));
+            let input = random_planes(inputs, [width, height], seed ^ 1);
+            let output = convolution.forward(&parameters, &input);
+            let taps = side * side;
+            for (plane, row, column) in [(0, 0, 0), (5, height / 2, width / 2), (15, height - 1, width - 1)] {
+                let mut sum = 0.1;
+                for term in 0..inputs * taps {
+                    let number = at(&input, term / taps, column, row, term % taps, side);
+                    sum += parameters[plane * inputs * taps + term] * number;
+                }
+                prop_assert_eq!(output.get(plane, column, row).to_bits(), sum.to_bits());
+            }
+        }
+
+        #[test]
+        fn backward_is_the_transpose_of_forward(
+            width in 1..40_usize,
+            height in 1..20_usize,
+            side in prop::sample::select(vec![1, 3]),
+            seed: u64,
+        ) {
+            let convolution = Convolution::new("c", [BLOCK, BLOCK], side, &mut Range::default());
+            let mut parameters = vec![0.0; convolution.biases().end];
+            convolution.draw(&mut parameters, &mut Random::new(seed));
+            let input = random_planes(BLOCK, [width, height], seed ^ 1);
+            let gradient = random_planes(BLOCK, [width, height], seed ^ 2);
+            let product = |one: &Planes, other: &Planes| -> f64 {
+                let pairs = one.each().flatten().zip(other.each().flatten());
+                pairs.map(|(one, other)| f64::from(one * other)).sum()
+            };
+            let output = product(&convolution.forward(&parameters, &input), &gradient);
+            let before = product(&convolution.backward(&parameters, &gradient), &input);
+            let mut sum = vec![0.0; parameters.len()];
+            convolution.add_gradient(&input, &gradient, &mut sum);
+            let pairs = sum.iter().zip(&parameters);
+            let of_weights: f64 = pairs.map(|(part, weight)| f64::from(part * weight)).sum();
+            prop_assert!((output - before).abs() < 1e-2, "{} {}", output, before);
+            prop_assert!((output - of_weights).abs() < 1e-2, "{} {}", output, of_weights);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Courses: samples of what a demonstration shows, without end.
 
-use bevy::math::{Quat, Vec2, Vec3};
+use bevy::math::{Quat, Vec2};
 use tabletop_camera::Rasterizer;
 use tabletop_core::Random;
 use tabletop_episodes::multiplication::{Multiplication, VariedBeginning};
@@ -79,7 +79,11 @@ impl<'a> Course<'a> {
     pub(crate) fn fingerprint(&self) -> String {
         let of = self.multiplication;
         let (fingerprint, variation) = (of.fingerprint(), of.variation());
-        format!("{fingerprint}, seed {}, {} of {variation:?}", of.seed(), self.count)
+        format!(
+            "{fingerprint}, seed {}, {} of {variation:?}",
+            of.seed(),
+            self.count
+        )
     }
 
     fn heights(&self) -> Result<Vec<f32>, PolicyError> {
@@ -97,10 +101,7 @@ impl<'a> Course<'a> {
     }
 
     /// A scene in which the camera sees every object that the task moves, and every place to which it does.
-    pub(crate) fn begin(
-        &self,
-        number: u64,
-    ) -> Result<(VariedBeginning, StillScene), PolicyError> {
+    pub(crate) fn begin(&self, number: u64) -> Result<(VariedBeginning, StillScene), PolicyError> {
         for attempt in 0..TRIES {
             if let Some(beginning) = self.multiplication.beginning(number, attempt)? {
                 let scene = StillScene::of(&beginning);

@@ -13,7 +13,9 @@ use tabletop_episodes::multiplication::MultiplyError;
 pub enum PolicyError {
     #[error(transparent)]
     Multiply(#[from] MultiplyError),
-    #[error("step {0}: a policy can only put objects somewhere, not remove them, keep them in the hand or let them fall")]
+    #[error(
+        "step {0}: a policy can only put objects somewhere, not remove them, keep them in the hand or let them fall"
+    )]
     NoPlace(usize),
     #[error("the task has {0} different heights, more than the {most} that a policy tells apart", most = crate::label::MOST_LEVELS)]
     TooManyLevels(usize),

@@ -1,7 +1,7 @@
 //! Evaluation: a policy acts in scenes that it has not seen, until it says that the task is done. Nothing moves but what it moves, and that exactly as it
 //! decides.
 
-use bevy::math::{Quat, Vec3};
+use bevy::math::Quat;
 use tabletop_camera::Rasterizer;
 use tabletop_episodes::multiplication::VariedBeginning;
 use tabletop_geometry::{Pose, turn_about_z};
@@ -55,7 +55,13 @@ impl Policy {
         let mut rasterizer = Rasterizer::alone();
         for number in course.count()..course.count() + count {
             let (beginning, scene) = course.begin(number)?;
-            let result = self.act(course.task(), &beginning, scene, &mut rasterizer, &mut evaluation);
+            let result = self.act(
+                course.task(),
+                &beginning,
+                scene,
+                &mut rasterizer,
+                &mut evaluation,
+            );
             match result {
                 Ok(()) => evaluation.done.push(number),
                 Err(failure) => evaluation.failed.push((number, failure)),
@@ -123,9 +129,8 @@ fn pose_at(scene: &StillScene, id: &str, pose: Pose, place: ObjectPlace) -> Pose
 fn bindings(task: &Task, beginning: &VariedBeginning) -> Vec<Binding> {
     let object = |id: &str| beginning.objects.iter().find(|object| object.id == id);
     let objects = beginning.objects.iter();
-    let arrangement = Arrangement::new(
-        objects.map(|object| (object.id.as_str(), &object.shape, object.pose)),
-    );
+    let arrangement =
+        Arrangement::new(objects.map(|object| (object.id.as_str(), &object.shape, object.pose)));
     let free = |id: &str| arrangement.standing_on(id).is_empty();
     let mut bindings = vec![beginning.binding.clone()];
     for (i, role) in task.roles.iter().enumerate() {

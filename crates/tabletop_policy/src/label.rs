@@ -154,8 +154,7 @@ impl LabelPlanes {
             Label::Done => (None, None),
         };
         let heat = self.first(Part::Pick);
-        let (mut loss, whole) =
-            heat_loss(planes, heat, Some(response.whole), pick, &mut gradient);
+        let (mut loss, whole) = heat_loss(planes, heat, Some(response.whole), pick, &mut gradient);
         if let Some(pick) = pick {
             loss += self.mark_loss(planes, heat, pick, &mut gradient);
         }
@@ -222,10 +221,7 @@ fn heat_loss(
     }
     let log_all = libm::logf(all) + most;
     let Some(mark) = mark else {
-        return (
-            log_all - whole.unwrap_or(log_all),
-            of_whole / all - 1.0,
-        );
+        return (log_all - whole.unwrap_or(log_all), of_whole / all - 1.0);
     };
     let mut loss = 0.0;
     for (column, row, share) in neighbours(mark, planes) {
@@ -263,4 +259,55 @@ fn neighbours(mark: &Mark, planes: &Planes) -> [(usize, usize, f32); 4] {
             share(part.x, x) * share(part.y, y),
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_heading_knows_its_fold() {
+        let quarter = std::f32::consts::FRAC_PI_2;
+        let cube = Heading::of(&[0, 1, 2, 3].map(|turn| 0.2 + turn as f32 * quarter));
+        let yaw = cube.yaw().unwrap();
+        assert!((yaw.angle - 0.2).abs() < 1e-5 && yaw.fold == 4, "{yaw:?}");
+        let arrow = Heading::of(&[-3.0]).yaw().unwrap();
+        assert!(
+            (arrow.angle + 3.0).abs() < 1e-5 && arrow.fold == 1,
+            "{arrow:?}"
+        );
+        assert_eq!(Heading::of(&[]).yaw(), None);
+    }
+
+    #[test]
+    fn a_mark_between_pixels_is_found_again() {
+        let labels = LabelPlanes { levels: 2 };
+        let mut planes = Planes::new(labels.planes(), 32, 32);
+        let wanted = Mark {
+            at: Vec2::new(20.4, 31.3),
+            level: 1,
+            heading: Heading::of(&[0.7]),
+        };
+        planes
+            .each_mut()
+            .take(1)
+            .for_each(|plane| plane.fill(-30.0));
+        for (column, row, share) in neighbours(&wanted, &planes) {
+            *planes.get_mut(0, column, row) = share.ln();
+            *planes.get_mut(2, column, row) = 1.0;
+            for (i, part) in wanted
+                .heading
+                .0
+                .iter()
+                .flat_map(|pair| pair.to_array())
+                .enumerate()
+            {
+                *planes.get_mut(3 + i, column, row) = part;
+            }
+        }
+        let found = labels.mark(&planes, Part::Pick);
+        assert!(found.at.distance(wanted.at) < 1e-3, "{found:?}");
+        assert_eq!(found.level, 1);
+        assert!((found.heading.yaw().unwrap().angle - 0.7).abs() < 1e-4);
+    }
 }

@@ -19,6 +19,8 @@ mod resampling;
 mod still_scene;
 mod table_view;
 mod tensor_file;
+#[cfg(test)]
+mod test_recording;
 mod training;
 mod unet;
 

@@ -141,7 +141,9 @@ impl Policy {
                 let tensor = tensor.ok_or_else(|| format!("it lacks {name:?}"))?;
                 if tensor.shape != shape {
                     let found = &tensor.shape;
-                    return Err(format!("{name:?}: its shape is {found:?}, expected {shape:?}"));
+                    return Err(format!(
+                        "{name:?}: its shape is {found:?}, expected {shape:?}"
+                    ));
                 }
                 if !tensor.numbers.iter().all(|number| number.is_finite()) {
                     return Err(format!("{name:?}: a number is not finite"));

@@ -28,12 +28,11 @@ pub(crate) fn max_pooled_backward(input: &Planes, gradient: &Planes) -> Planes {
                 let mut four = four.map(|(x, y)| (2 * column + x, 2 * row + y)).into_iter();
                 let first = four.next().unwrap_or_default();
                 let number = |(column, row)| input.get(plane, column, row);
-                let (column_of_most, row_of_most) = four.fold(first, |most, next| {
-                    match number(next) > number(most) {
+                let (column_of_most, row_of_most) =
+                    four.fold(first, |most, next| match number(next) > number(most) {
                         true => next,
                         false => most,
-                    }
-                });
+                    });
                 *before.get_mut(plane, column_of_most, row_of_most) =
                     gradient.get(plane, column, row);
             }

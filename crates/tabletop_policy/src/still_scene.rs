@@ -33,7 +33,9 @@ impl StillScene {
             ..HeadCamera::default()
         };
         let objects = beginning.objects.clone();
-        let first = objects.iter().map(|object| (object.id.clone(), object.pose));
+        let first = objects
+            .iter()
+            .map(|object| (object.id.clone(), object.pose));
         Self {
             camera: Camera::of_head(&head, table),
             table: DrawnSolid::of_table(table, 1),
@@ -61,9 +63,7 @@ impl StillScene {
     pub fn sees(&self, point: Vec3) -> bool {
         let last = [self.camera.width, self.camera.height].map(|side| side as f32 - 1.0);
         let pixel = self.camera.pixel_of(point);
-        pixel.is_some_and(|at| {
-            (0.0..=last[0]).contains(&at.x) && (0.0..=last[1]).contains(&at.y)
-        })
+        pixel.is_some_and(|at| (0.0..=last[0]).contains(&at.x) && (0.0..=last[1]).contains(&at.y))
     }
 
     pub fn pose(&self, id: &str) -> Option<Pose> {
@@ -80,29 +80,56 @@ impl StillScene {
 
     /// The pose to which a step brings its object now. `None` if it has no goal, or its object or reference is missing.
     pub fn goal(&self, step: &TaskStep, binding: &Binding) -> Option<Pose> {
-        let goal = step.goal.as_ref()?;
-        let frame = match &goal.reference {
-            Reference::Table => Pose::IDENTITY,
-            Reference::Object { object } => self.pose(binding.object(object)?)?,
-            Reference::PlaceOf { object } => *self.first.get(binding.object(object)?)?,
-            Reference::Itself => self.pose(binding.object(&step.object)?)?,
-        };
-        Some(frame * goal.pose)
+        Some(self.frame(step, binding)? * step.goal.as_ref()?.pose)
     }
 
-    /// True if, in a scene in which the task was done step by step, every object is within `tolerance` units of where its last step puts it.
+    /// The pose of the reference of a step's goal.
+    fn frame(&self, step: &TaskStep, binding: &Binding) -> Option<Pose> {
+        match &step.goal.as_ref()?.reference {
+            Reference::Table => Some(Pose::IDENTITY),
+            Reference::Object { object } => self.pose(binding.object(object)?),
+            Reference::PlaceOf { object } => self.first.get(binding.object(object)?).copied(),
+            Reference::Itself => self.pose(binding.object(&step.object)?),
+        }
+    }
+
+    /// True if every object is within `tolerance` units of where its last step puts it, in some orientation in which the reference looks the same.
     pub fn shows(&self, task: &Task, binding: &Binding, tolerance: f32) -> bool {
         let lasts = task.steps.iter().enumerate().filter(|(i, step)| {
             let mut later = task.steps[i + 1..].iter();
             later.all(|later| later.object != step.object)
         });
-        let mut lasts = lasts.map(|(_, step)| step);
-        lasts.all(|step| {
+        let lasts: Vec<_> = lasts.map(|(_, step)| step).collect();
+        let is_met = |step: &TaskStep, frame: Pose| {
             let now = binding.object(&step.object).and_then(|id| self.pose(id));
-            let goal = self.goal(step, binding);
+            let goal = step.goal.as_ref().map(|goal| frame * goal.pose.location);
             let pair = now.zip(goal);
-            pair.is_some_and(|(now, goal)| now.location.distance(goal.location) <= tolerance)
+            pair.is_some_and(|(now, goal)| now.location.distance(goal) <= tolerance)
+        };
+        lasts.iter().all(|step| {
+            let Some(frame) = self.frame(step, binding) else {
+                return false;
+            };
+            let Some(reference) = referred(step) else {
+                return is_met(step, frame);
+            };
+            let role = task.role(reference);
+            let frames = role.map_or_else(Vec::new, |role| role.symmetry.variants(frame));
+            frames.into_iter().any(|frame| {
+                let mut related = lasts
+                    .iter()
+                    .filter(|step| referred(step) == Some(reference));
+                related.all(|step| is_met(step, frame))
+            })
         })
+    }
+}
+
+/// The role to whose present pose the goal of a step is related.
+fn referred(step: &TaskStep) -> Option<&str> {
+    match &step.goal.as_ref()?.reference {
+        Reference::Object { object } => Some(object),
+        Reference::Table | Reference::PlaceOf { .. } | Reference::Itself => None,
     }
 }
 
@@ -161,7 +188,10 @@ mod tests {
             assert_eq!(found.fold, fold, "{span} {turn}");
             let period = std::f32::consts::TAU / fold as f32;
             let rest = (found.angle - 20_f32.to_radians()).rem_euclid(period / 2.0);
-            assert!(rest.min(period / 2.0 - rest) < 1e-3, "{span} {turn}: {found:?}");
+            assert!(
+                rest.min(period / 2.0 - rest) < 1e-3,
+                "{span} {turn}: {found:?}"
+            );
         }
         let color = Rgb::RED;
         let ball = Symmetry::of(&Shape::Sphere { radius: 1.0, color });

@@ -102,7 +102,8 @@ mod tests {
     fn a_flat_tile_is_seen_in_its_place_from_anywhere() {
         let table = Table::default();
         let tile = Vec2::new(2.0, -1.0);
-        let looking_aside = Pose::looking_at(Vec3::new(-3.0, -9.0, 10.0), Vec3::new(0.0, -1.0, 0.0));
+        let looking_aside =
+            Pose::looking_at(Vec3::new(-3.0, -9.0, 10.0), Vec3::new(0.0, -1.0, 0.0));
         for mount in [None, Some(looking_aside)] {
             let head = HeadCamera {
                 mount,

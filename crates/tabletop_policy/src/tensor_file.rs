@@ -30,7 +30,8 @@ impl TensorFile {
         for (name, tensor) in &self.tensors {
             let first = end;
             end += tensor.numbers.len() * BYTES;
-            let entry = json!({ "dtype": "F32", "shape": tensor.shape, "data_offsets": [first, end] });
+            let entry =
+                json!({ "dtype": "F32", "shape": tensor.shape, "data_offsets": [first, end] });
             header.insert(name.clone(), entry);
         }
         let mut header = Value::Object(header).to_string().into_bytes();
@@ -60,8 +61,8 @@ impl TensorFile {
         for (name, entry) in &header {
             let at = |fault: String| format!("header, {name:?}: {fault}");
             if name == METADATA {
-                file.metadata = serde_json::from_value(entry.clone())
-                    .map_err(|error| at(error.to_string()))?;
+                file.metadata =
+                    serde_json::from_value(entry.clone()).map_err(|error| at(error.to_string()))?;
                 continue;
             }
             let (range, tensor) = tensor(entry, data).map_err(at)?;
@@ -100,7 +101,10 @@ fn tensor(entry: &Value, data: &[u8]) -> Result<([usize; 2], Tensor), String> {
     let shape = list("shape")?;
     let offsets = list("data_offsets")?;
     let [first, end] = offsets[..] else {
-        return Err(format!("data_offsets: {} numbers, expected 2", offsets.len()));
+        return Err(format!(
+            "data_offsets: {} numbers, expected 2",
+            offsets.len()
+        ));
     };
     let bytes = data.get(first..end).ok_or_else(|| {
         format!(
@@ -108,11 +112,20 @@ fn tensor(entry: &Value, data: &[u8]) -> Result<([usize; 2], Tensor), String> {
             data.len()
         )
     })?;
-    let count = shape.iter().try_fold(BYTES, |all, side| all.checked_mul(*side));
+    let count = shape
+        .iter()
+        .try_fold(BYTES, |all, side| all.checked_mul(*side));
     if count != Some(bytes.len()) {
-        return Err(format!("{} bytes do not fit the shape {shape:?}", bytes.len()));
+        return Err(format!(
+            "{} bytes do not fit the shape {shape:?}",
+            bytes.len()
+        ));
     }
-    let numbers = bytes.as_chunks().0.iter().map(|&number| f32::from_le_bytes(number));
+    let numbers = bytes
+        .as_chunks()
+        .0
+        .iter()
+        .map(|&number| f32::from_le_bytes(number));
     let numbers = numbers.collect();
     Ok(([first, end], Tensor { shape, numbers }))
 }
@@ -132,7 +145,10 @@ mod tests {
             metadata: [("format".to_owned(), "1".to_owned())].into(),
             tensors: [
                 ("b".to_owned(), tensor(&[2], &[1.0, -2.5])),
-                ("a".to_owned(), tensor(&[1, 3], &[f32::MIN_POSITIVE, 0.0, 3.0])),
+                (
+                    "a".to_owned(),
+                    tensor(&[1, 3], &[f32::MIN_POSITIVE, 0.0, 3.0]),
+                ),
             ]
             .into(),
         }
@@ -154,17 +170,32 @@ mod tests {
     fn a_fault_is_located() {
         let whole = file().to_bytes();
         let fault = |bytes: &[u8]| TensorFile::parse(bytes).unwrap_err();
-        assert_eq!(fault(&whole[..5]), "it ends after 5 bytes, within the header");
+        assert_eq!(
+            fault(&whole[..5]),
+            "it ends after 5 bytes, within the header"
+        );
         assert_eq!(
             fault(&whole[..whole.len() - 1]),
             r#"header, "b": data_offsets: 12 to 20 are not within the 19 bytes of numbers"#
         );
         let more = [&whole[..], &[0]].concat();
         assert_eq!(fault(&more), "it has 21 bytes of numbers, expected 20");
-        let other = with_header(r#"{"a":{"dtype":"BF16","shape":[],"data_offsets":[0,2]}}"#, &[0; 2]);
-        assert_eq!(fault(&other), r#"header, "a": its dtype is "BF16", expected "F32""#);
-        let hole = with_header(r#"{"a":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}}"#, &[0; 8]);
-        assert_eq!(fault(&hole), r#"header, "a": it begins at byte 4 of the numbers, expected 0"#);
+        let other = with_header(
+            r#"{"a":{"dtype":"BF16","shape":[],"data_offsets":[0,2]}}"#,
+            &[0; 2],
+        );
+        assert_eq!(
+            fault(&other),
+            r#"header, "a": its dtype is "BF16", expected "F32""#
+        );
+        let hole = with_header(
+            r#"{"a":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}}"#,
+            &[0; 8],
+        );
+        assert_eq!(
+            fault(&hole),
+            r#"header, "a": it begins at byte 4 of the numbers, expected 0"#
+        );
         let huge = format!(
             r#"{{"a":{{"dtype":"F32","shape":[{0},{0}],"data_offsets":[0,4]}}}}"#,
             1_u64 << 40

@@ -50,7 +50,7 @@ const BATCH: usize = 8;
 const LENGTH: f32 = 1e-3;
 /// Batches until steps are at their longest.
 const WARMUP: f32 = 50.0;
-/// Batches between two saves, and over which the loss is averaged: some ten seconds.
+/// Batches between two saves, and over which the reported loss is averaged: some ten seconds.
 const SAVED_AFTER: usize = 50;
 
 const MEANS: &str = "training.means";
@@ -125,7 +125,7 @@ impl Training {
         self.samples.div_ceil(BATCH as u64) as usize
     }
 
-    /// Learns until the end, or until `report` breaks. It reports, and saves the training in the file, every few seconds and in the end.
+    /// Learns until the end, or until `report`, which is called after each batch, breaks. Saves the training in the file every few seconds and when it stops.
     ///
     /// # Errors
     /// The file cannot be written, or the course cannot go on.
@@ -141,12 +141,6 @@ impl Training {
         while !self.is_finished() {
             self.learn(course, &mut rasterizers)?;
             let now = self.losses.len();
-            if !now.is_multiple_of(SAVED_AFTER) && !self.is_finished() {
-                continue;
-            }
-            let bytes = self.to_file().to_bytes();
-            let saved = Storage::default().replace(path, &bytes);
-            saved.map_err(PolicyError::io(path))?;
             let seconds = start.elapsed().as_secs_f64() / (now - first) as f64;
             let recent = &self.losses[now.saturating_sub(SAVED_AFTER)..];
             let progress = TrainingProgress {
@@ -155,7 +149,13 @@ impl Training {
                 rate: BATCH as f64 / seconds,
                 left: Duration::from_secs_f64(seconds * (self.batches() - now) as f64),
             };
-            if report(&progress).is_break() {
+            let is_stopped = report(&progress).is_break();
+            if is_stopped || self.is_finished() || now.is_multiple_of(SAVED_AFTER) {
+                let bytes = self.to_file().to_bytes();
+                let saved = Storage::default().replace(path, &bytes);
+                saved.map_err(PolicyError::io(path))?;
+            }
+            if is_stopped {
                 break;
             }
         }
@@ -172,13 +172,18 @@ impl Training {
         let first = (self.losses.len() * BATCH) as u64;
         let threads = rasterizers.len();
         let parts: Result<Vec<_>, PolicyError> = thread::scope(|scope| {
-            let workers = rasterizers.iter_mut().enumerate().map(|(thread, rasterizer)| {
-                scope.spawn(move || {
-                    let own = (thread..BATCH).step_by(threads);
-                    own.map(|i| Ok((i, gradient(policy, course, first + i as u64, rasterizer)?)))
+            let workers = rasterizers
+                .iter_mut()
+                .enumerate()
+                .map(|(thread, rasterizer)| {
+                    scope.spawn(move || {
+                        let own = (thread..BATCH).step_by(threads);
+                        own.map(|i| {
+                            Ok((i, gradient(policy, course, first + i as u64, rasterizer)?))
+                        })
                         .collect::<Result<Vec<_>, PolicyError>>()
-                })
-            });
+                    })
+                });
             let workers: Vec<_> = workers.collect();
             let joined = workers.into_iter().map(|worker| {
                 let joined = worker.join();
@@ -210,7 +215,8 @@ impl Training {
     /// The policy; while the training goes on, also all that it needs for that.
     fn to_file(&self) -> TensorFile {
         let mut file = self.policy.to_file();
-        file.metadata.insert(COURSE.into(), self.fingerprint.clone());
+        file.metadata
+            .insert(COURSE.into(), self.fingerprint.clone());
         let mut put = |name: &str, numbers: &[f32]| {
             let (shape, numbers) = (vec![numbers.len()], numbers.to_vec());
             file.tensors.insert(name.into(), Tensor { shape, numbers });
@@ -255,4 +261,54 @@ fn sum(mut lists: Vec<Vec<f32>>) -> Vec<f32> {
         }
     }
     lists.pop().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use tabletop_episodes::multiplication::{Multiplication, Variation};
+    use tabletop_recorder::RecordingReader;
+    use tabletop_storage::TemporaryFolder;
+
+    use super::*;
+    use crate::test_recording::record;
+
+    fn trained(course: &Course, threads: usize, file: &Path, interrupted: bool) -> Vec<u8> {
+        loop {
+            let mut training = Training::resume(file, course, 24, 5).unwrap();
+            let stop = |_: &TrainingProgress| match interrupted {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            };
+            training.run(course, threads, file, stop).unwrap();
+            if training.is_finished() {
+                return fs::read(file).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn threads_and_interruptions_change_no_bit() {
+        let folder = TemporaryFolder::new("training").unwrap();
+        let demo = folder.path().join("demo");
+        record(&demo);
+        let recording = RecordingReader::open(&demo).unwrap();
+        let variation = Variation {
+            light: 0.3,
+            camera: 0.2,
+            distractors: 2,
+            ..Variation::default()
+        };
+        let multiplication = Multiplication::of(&recording, None, variation, 1).unwrap();
+        let course = Course::new(&multiplication, 100).unwrap();
+        assert_eq!(course.levels().len(), 2);
+        let file = |name: &str| folder.path().join(name);
+        let plain = trained(&course, 1, &file("plain"), false);
+        assert!(trained(&course, 3, &file("threads"), false) == plain);
+        assert!(trained(&course, 2, &file("interrupted"), true) == plain);
+        assert!(Policy::read(&file("plain")).is_ok());
+        let other = Training::resume(&file("plain"), &course, 25, 5).unwrap_err();
+        assert!(matches!(other, PolicyError::OtherCourse { .. }), "{other}");
+    }
 }

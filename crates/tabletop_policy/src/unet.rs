@@ -6,7 +6,7 @@ use std::ops::Range;
 use tabletop_core::Random;
 
 use crate::{
-    convolution::Convolution,
+    convolution::{BLOCK, Convolution},
     planes::Planes,
     resampling::{doubled_before, doubled_before_backward, max_pooled, max_pooled_backward},
 };
@@ -18,10 +18,7 @@ const UP: [usize; 4] = [32, 32, 64, 64];
 const DOWN_NAMES: [&str; DOWN.len()] = ["down.0", "down.1", "down.2", "down.3", "down.4", "down.5"];
 const UP_NAMES: [&str; UP.len()] = ["up.1", "up.2", "up.3", "up.4"];
 
-/// Width and height of the input are multiples of this.
-pub(crate) const COARSEST: usize = 1 << (DOWN.len() - 1);
-
-/// The network's shape. Its parameters are a list of numbers beside it.
+/// The network's shape. Width and height of its input are multiples of 32. Its parameters are a list of numbers beside it.
 #[derive(Clone, Debug)]
 pub(crate) struct UNet {
     down: Vec<Convolution>,
@@ -61,7 +58,7 @@ impl UNet {
         });
         let up = up.collect();
         let head = Convolution::new("head", [UP[0], outputs], 1, parameters);
-        let deepest = [DOWN[DOWN.len() - 1], crate::convolution::BLOCK];
+        let deepest = [DOWN[DOWN.len() - 1], BLOCK];
         let whole = Convolution::new("whole", deepest, 1, parameters);
         Self {
             down,
@@ -156,7 +153,8 @@ impl UNet {
         }
         self.whole.add_gradient(coarsest, &mean, &mut sum);
         gradient.add(&self.whole.backward(parameters, &mean));
-        for (level, (convolution, [input, output])) in self.down.iter().zip(down).enumerate().rev() {
+        for (level, (convolution, [input, output])) in self.down.iter().zip(down).enumerate().rev()
+        {
             if let Some(beside) = level.checked_sub(1).and_then(|level| beside.get(level)) {
                 gradient.add(beside);
             }
@@ -168,5 +166,68 @@ impl UNet {
             }
         }
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::Vec2;
+
+    use super::*;
+    use crate::label::{Heading, Label, LabelPlanes, Mark};
+
+    fn mark(x: f32, y: f32, level: usize) -> Mark {
+        Mark {
+            at: Vec2::new(x, y),
+            level,
+            heading: Heading::of(&[0.3]),
+        }
+    }
+
+    #[test]
+    fn gradients_are_those_of_finite_differences() {
+        let planes = LabelPlanes { levels: 3 };
+        let net = UNet::new(5, planes.planes());
+        let random = &mut Random::new(1);
+        let mut input = Planes::new(5, 64, 32);
+        for number in input.numbers_mut() {
+            *number = random.between((-0.5, 0.5));
+        }
+        input.clear_borders();
+        let (pick, place) = (mark(20.3, 11.8, 0), mark(50.0, 25.5, 2));
+        for label in [Label::Move { pick, place }, Label::Done] {
+            let mut parameters = net.drawn(2);
+            let loss = |parameters: &[f32]| {
+                let response = net.forward(parameters, input.clone());
+                let (loss, of_planes, of_whole) = planes.loss(&response, &label);
+                (
+                    loss,
+                    net.backward(parameters, &response, &of_planes, of_whole),
+                )
+            };
+            let (_, gradient) = loss(&parameters);
+            let tensors = net.convolutions().flat_map(Convolution::tensors);
+            for (name, _, range) in tensors {
+                // Along the gradient, where the difference is largest and rounding matters least.
+                let along = gradient[range.clone()].to_vec();
+                let expected: f32 = along.iter().map(|part| part * part).sum();
+                let mut at = |step: f32| {
+                    let before = parameters.clone();
+                    for (parameter, part) in parameters[range.clone()].iter_mut().zip(&along) {
+                        *parameter += step * part;
+                    }
+                    let (loss, _) = loss(&parameters);
+                    parameters = before;
+                    loss
+                };
+                let step = 0.003 / expected.sqrt().max(1e-3);
+                let found = (at(step) - at(-step)) / (2.0 * step);
+                let off = (found - expected).abs();
+                assert!(
+                    off <= 0.05 * expected + 1e-4,
+                    "{name}: {found} is not {expected}"
+                );
+            }
+        }
     }
 }
