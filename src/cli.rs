@@ -21,6 +21,7 @@ mod init;
 mod jobs;
 #[cfg(feature = "window")]
 mod keys;
+mod learn;
 mod man;
 mod multiply;
 mod number_run;
@@ -44,6 +45,7 @@ mod shard;
 mod soak;
 mod terminal;
 mod validate;
+mod variation_options;
 mod video;
 mod watch;
 mod window;
@@ -90,6 +92,8 @@ enum Command {
     Imitate(imitate::ImitateArgs),
     /// Make many demonstrations from one, with everything elsewhere: for training networks
     Multiply(multiply::MultiplyArgs),
+    /// Learn a policy from one demonstration: from the head camera's picture to what is to be put where
+    Learn(learn::LearnArgs),
     /// Write recordings as a dataset that other tools read
     Export(export::ExportArgs),
     /// Make a video, an animation or a contact sheet of a recording
@@ -168,6 +172,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Require(args)) => require::require(&args),
         Some(Command::Imitate(args)) => imitate::run(&args),
         Some(Command::Multiply(args)) => multiply::run(&args),
+        Some(Command::Learn(args)) => learn::run(&args),
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Video(args)) => video::run(&args),
         Some(Command::Report(args)) => report::run(&args),

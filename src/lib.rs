@@ -72,6 +72,7 @@ pub use tabletop_mechanism as mechanism;
 pub use tabletop_mesh as mesh;
 pub use tabletop_physics as physics;
 pub use tabletop_planner as planner;
+pub use tabletop_policy as policy;
 pub use tabletop_recorder as recorder;
 pub use tabletop_replay as replay;
 pub use tabletop_report as report;

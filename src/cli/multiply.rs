@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode, time::In
 
 use crate::{
     Collection, CollectionError,
-    multiplication::{Made, Multiplication, Variation},
+    multiplication::{Made, Multiplication},
     recorder::{RecordingReader, SessionHeader, read_original},
     run_episodes,
     shipped::read_faultless_task,
@@ -26,6 +26,7 @@ use super::{
     robot_options::robot_of,
     shard::ShardOption,
     terminal::{say, show_warnings},
+    variation_options::VariationOptions,
 };
 
 #[derive(Args)]
@@ -47,26 +48,13 @@ pub(super) struct MultiplyArgs {
     /// with the same joints. The recording comes before this option
     #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(no_folder))]
     robot: Option<Option<PathBuf>>,
-    /// Give the objects other colours, as far as the requirements allow
-    #[arg(long)]
-    colors: bool,
-    /// Make blocks and cylinders narrower by up to this part of their widths, from 0 to 0.5, as far as requirements allow
-    #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
-    sizes: f32,
+    #[command(flatten)]
+    variation: VariationOptions,
     /// The task file with the objects to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put up to this number of other objects around, from 0 to 50
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = DISTRACTORS, allow_negative_numbers = true)]
-    distractors: u32,
-    /// Move the head camera by up to this many units, from 0 to 10, and turn it by up to 2° per unit
-    #[arg(long, value_name = "UNITS", value_parser = LENGTHS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
-    camera: f32,
-    /// Let brightness, direction and colour of the light in the pictures differ by up to this part, from 0 to 0.5
-    #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
-    light: f32,
     #[command(flatten)]
     hand_cameras: HandCameraOption,
     #[command(flatten)]
@@ -77,9 +65,6 @@ pub(super) struct MultiplyArgs {
 }
 
 const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
-const PARTS: NumberRange<f32> = NumberRange::decimal(0.0, 0.5);
-const DISTRACTORS: NumberRange<u32> = NumberRange::whole(0, 50);
-const LENGTHS: NumberRange<f32> = NumberRange::decimal(0.0, 10.0).of("units");
 
 /// The file with what a folder of demonstrations is made of.
 const MANIFEST: &str = "multiply.json";
@@ -99,13 +84,7 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         Some(file) => Some(robot_of(file.as_deref())?),
         None => None,
     };
-    let variation = Variation {
-        colors: args.colors,
-        sizes: args.sizes,
-        distractors: args.distractors,
-        camera: args.camera,
-        light: args.light,
-    };
+    let variation = args.variation.variation();
     let robot_or_baxter = robot.clone().unwrap_or_default();
     let hand_pictures = args.hand_cameras.of(&robot_or_baxter)?;
     let scene = match &args.setup {
@@ -270,11 +249,11 @@ impl MultiplyArgs {
             "program": env!("CARGO_PKG_VERSION"),
             "seed": self.seed,
             "robot": self.robot.is_some(),
-            "colors": self.colors,
-            "sizes": self.sizes,
-            "distractors": self.distractors,
-            "camera": self.camera,
-            "light": self.light,
+            "colors": self.variation.colors,
+            "sizes": self.variation.sizes,
+            "distractors": self.variation.distractors,
+            "camera": self.variation.camera,
+            "light": self.variation.light,
             "hand_cameras": self.hand_cameras.hand_cameras,
         })
     }

@@ -336,6 +336,7 @@ const RULES: [Rule; 41] = [
             "tabletop_storage",
             "tabletop_task",
             "tabletop_planner",
+            "tabletop_policy",
             "tabletop_user",
             "tabletop_validation",
             "tabletop_view",

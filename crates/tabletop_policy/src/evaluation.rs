@@ -1,6 +1,8 @@
 //! Evaluation: a policy acts in scenes that it has not seen, until it says that the task is done. Nothing moves but what it moves, and that exactly as it
 //! decides.
 
+use std::fmt;
+
 use bevy::math::Quat;
 use tabletop_camera::Rasterizer;
 use tabletop_episodes::multiplication::VariedBeginning;
@@ -36,6 +38,16 @@ pub enum PolicyFailure {
     NotDone,
     /// It went on for ever.
     Endless,
+}
+
+impl fmt::Display for PolicyFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TookNothing => "the policy took something where nothing is",
+            Self::NotDone => "the policy said that the task is done, and it is not",
+            Self::Endless => "the policy went on after twice as many moves as were shown",
+        })
+    }
 }
 
 /// The largest distance, in units, between an object's origin and the place where a hand that takes it should find it.

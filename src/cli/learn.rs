@@ -1,0 +1,116 @@
+//! `tabletop learn`: a policy from one demonstration.
+
+use std::{ops::ControlFlow, path::PathBuf, process::ExitCode, time::Instant};
+
+use crate::{
+    multiplication::Multiplication,
+    policy::{Course, Evaluation, PolicyError, Training, loss_curve},
+    recorder::RecordingReader,
+    storage::Storage,
+};
+use clap::Args;
+
+use super::{
+    Failure, Output,
+    cut_off::say_if_cut_off,
+    jobs::{JOBS, at_a_time},
+    progress::ProgressLine,
+    range::{NumberRange, SEEDS},
+    terminal::show_warnings,
+    variation_options::VariationOptions,
+};
+
+#[derive(Args)]
+pub(super) struct LearnArgs {
+    /// The recording's folder
+    #[arg(value_name = "DIR")]
+    recording: PathBuf,
+    /// The policy's file; a training that it holds goes on. The plot of the loss is put beside it, as .svg
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Number of scenes to learn from, from 1 to 1000000
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = COUNTS, allow_negative_numbers = true)]
+    count: u64,
+    /// Number of samples, each a step in a scene, from 1 to 100000000
+    #[arg(long, value_name = "N", default_value_t = 40_000, value_parser = SAMPLES, allow_negative_numbers = true)]
+    samples: u64,
+    /// Number of other scenes in which the policy is tried in the end, from 0 to 100000
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = TRIALS, allow_negative_numbers = true)]
+    trials: u64,
+    /// The seed of scenes, samples and first weights, from 0 to 18446744073709551615 [default: 0]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = SEEDS, allow_negative_numbers = true)]
+    seed: u64,
+    #[command(flatten)]
+    variation: VariationOptions,
+    /// Number of threads, from 1 to 256, of which at most eight have work [default: the number of cores]
+    #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
+    jobs: Option<usize>,
+}
+
+const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
+const SAMPLES: NumberRange<u64> = NumberRange::whole(1, 100_000_000);
+const TRIALS: NumberRange<u64> = NumberRange::whole(0, 100_000);
+
+/// Learns, and prints how the policy does in other scenes. Exit code 1 if it cannot learn.
+pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
+    show_warnings();
+    let recording = RecordingReader::open(&args.recording).map_err(Failure::input)?;
+    say_if_cut_off(&recording, "learned from");
+    let variation = args.variation.variation();
+    let multiplication = Multiplication::of(&recording, None, variation, args.seed);
+    let multiplication = multiplication.map_err(Failure::input)?;
+    let course = Course::new(&multiplication, args.count).map_err(failure)?;
+    let training = Training::resume(&args.out, &course, args.samples, args.seed);
+    let mut training = training.map_err(failure)?;
+    let start = Instant::now();
+    learn(args, &course, &mut training)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let plot = args.out.with_extension("svg");
+    let plotted = Storage::default().replace(&plot, loss_curve(training.losses()).as_bytes());
+    plotted.map_err(|error| Failure::at(&plot, error))?;
+    let evaluation = training
+        .policy()
+        .evaluate(&course, args.trials)
+        .map_err(failure)?;
+    let text = format!("learned in {seconds:.0} s\n{}", table(&evaluation));
+    Output::Stdout.write(text.as_bytes())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn learn(args: &LearnArgs, course: &Course, training: &mut Training) -> Result<(), Failure> {
+    let mut line = ProgressLine::new(args.samples, " samples");
+    let threads = at_a_time(args.jobs, usize::MAX);
+    let result = training.run(course, threads, &args.out, |progress| {
+        let [done, all] = progress.samples;
+        line.expect(all);
+        line.reach(done, &format!(", loss {:.2}", progress.loss));
+        ControlFlow::Continue(())
+    });
+    line.end();
+    result.map_err(failure)
+}
+
+fn table(evaluation: &Evaluation) -> String {
+    let trials = evaluation.done.len() + evaluation.failed.len();
+    let mut text = format!(
+        "{} of {trials} unseen scenes done; objects taken {:.2} units from their origins on average\n",
+        evaluation.done.len(),
+        evaluation.mean_pick_error(),
+    );
+    for (number, failure) in &evaluation.failed {
+        text += &format!("scene {number}: {failure}\n");
+    }
+    text
+}
+
+fn failure(error: PolicyError) -> Failure {
+    match error {
+        PolicyError::Io { .. } => Failure::run(error),
+        PolicyError::Multiply(_)
+        | PolicyError::NoPlace(_)
+        | PolicyError::TooManyLevels(_)
+        | PolicyError::NothingSeen
+        | PolicyError::Damaged { .. }
+        | PolicyError::OtherCourse { .. } => Failure::input(error),
+    }
+}
