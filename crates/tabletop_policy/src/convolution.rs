@@ -1,18 +1,19 @@
 //! Convolutions, forward and backward.
 //!
 //! Each output number has an accumulator of its own, to which products are added one after the other, in the order of the inputs. The compiler
-//! turns neighbouring accumulators into vectors and fuses nothing, so the bits are those of the plain loop on every processor.
+//! turns neighbouring accumulators into vectors, as wide as the processor has, and fuses nothing, so the bits are those of the plain loop on every processor.
 
 use std::ops::Range;
 
+use pulp::Arch;
 use tabletop_core::Random;
 
 use crate::planes::Planes;
 
 /// Outputs of a convolution are a multiple of this.
 pub(crate) const BLOCK: usize = 16;
-/// Output planes, and neighbouring pixels, that are summed at once: as many as a processor with 16 vectors of four has room for.
-const TILE: [usize; 2] = [4, 12];
+/// Output planes, and neighbouring pixels, that are summed at once: as many as a processor with 16 vectors of eight has room for.
+const TILE: [usize; 2] = [4, 24];
 /// Pixels over which a weight's gradient is summed at a time, so that they stay in the nearest cache.
 const CHUNK: usize = 256;
 
@@ -127,10 +128,14 @@ impl Convolution {
     }
 
     fn convolve(&self, packed: &[f32], biases: &[f32], input: &Planes, output: &mut Planes) {
-        match self.side {
-            1 => convolve::<1>(packed, biases, input, output),
-            _ => convolve::<3>(packed, biases, input, output),
-        }
+        // With the widest vectors that this processor has.
+        Arch::new().dispatch(
+            #[inline(always)]
+            || match self.side {
+                1 => convolve::<1>(packed, biases, input, output),
+                _ => convolve::<3>(packed, biases, input, output),
+            },
+        );
         output.clear_borders();
     }
 
@@ -140,13 +145,17 @@ impl Convolution {
             *bias += plane.iter().sum::<f32>();
         }
         let weights = &mut sum[self.weights()];
-        match self.side {
-            1 => add_gradient::<1>(input, gradient, weights),
-            _ => add_gradient::<3>(input, gradient, weights),
-        }
+        Arch::new().dispatch(
+            #[inline(always)]
+            || match self.side {
+                1 => add_gradient::<1>(input, gradient, weights),
+                _ => add_gradient::<3>(input, gradient, weights),
+            },
+        );
     }
 }
 
+#[inline(always)]
 fn convolve<const SIDE: usize>(
     packed: &[f32],
     biases: &[f32],
@@ -187,6 +196,7 @@ fn convolve<const SIDE: usize>(
     }
 }
 
+#[inline(always)]
 fn add_gradient<const SIDE: usize>(input: &Planes, gradient: &Planes, sum: &mut [f32]) {
     let (first, pitch, span) = (input.first(), input.pitch(), input.span());
     let corner = (first - 1 - pitch) + (3 - SIDE) / 2 * (pitch + 1);

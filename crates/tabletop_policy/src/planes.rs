@@ -1,7 +1,7 @@
 //! Planes of numbers: pictures, and what a network makes of them.
 
 /// Numbers beyond the end of a plane that a product may read and write.
-const SLACK: usize = 16;
+const SLACK: usize = 32;
 
 /// Planes of one size. Each has a border of zeros, one pixel wide, so that a 3×3 convolution is nine shifted sums along the whole plane.
 #[derive(Clone, Debug, PartialEq)]

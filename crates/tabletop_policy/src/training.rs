@@ -45,13 +45,13 @@ pub struct TrainingProgress {
 }
 
 /// Samples from which a step is computed.
-const BATCH: usize = 8;
+const BATCH: usize = 4;
 /// Length of the longest steps.
 const LENGTH: f32 = 1e-3;
 /// Batches until steps are at their longest.
-const WARMUP: f32 = 50.0;
+const WARMUP: f32 = 100.0;
 /// Batches between two saves, and over which the reported loss is averaged: some ten seconds.
-const SAVED_AFTER: usize = 50;
+const SAVED_AFTER: usize = 100;
 
 const MEANS: &str = "training.means";
 const SQUARES: &str = "training.squares";
