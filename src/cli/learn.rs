@@ -4,7 +4,7 @@ use std::{ops::ControlFlow, path::PathBuf, process::ExitCode, time::Instant};
 
 use crate::{
     multiplication::Multiplication,
-    policy::{Course, Evaluation, PolicyError, Training, loss_curve},
+    policy::{Curriculum, Evaluation, PolicyError, Training, loss_curve},
     recorder::RecordingReader,
     storage::Storage,
 };
@@ -59,28 +59,28 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     let variation = args.variation.variation();
     let multiplication = Multiplication::of(&recording, None, variation, args.seed);
     let multiplication = multiplication.map_err(Failure::input)?;
-    let course = Course::new(&multiplication, args.count).map_err(failure)?;
-    let training = Training::resume(&args.out, &course, args.samples, args.seed);
+    let curriculum = Curriculum::new(&multiplication, args.count).map_err(failure)?;
+    let training = Training::resume(&args.out, &curriculum, args.samples, args.seed);
     let mut training = training.map_err(failure)?;
     let start = Instant::now();
-    learn(args, &course, &mut training)?;
+    learn(args, &curriculum, &mut training)?;
     let seconds = start.elapsed().as_secs_f64();
     let plot = args.out.with_extension("svg");
     let plotted = Storage::default().replace(&plot, loss_curve(training.losses()).as_bytes());
     plotted.map_err(|error| Failure::at(&plot, error))?;
     let evaluation = training
         .policy()
-        .evaluate(&course, args.trials)
+        .evaluate(&curriculum, args.trials)
         .map_err(failure)?;
     let text = format!("learned in {seconds:.0} s\n{}", table(&evaluation));
     Output::Stdout.write(text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn learn(args: &LearnArgs, course: &Course, training: &mut Training) -> Result<(), Failure> {
+fn learn(args: &LearnArgs, curriculum: &Curriculum, training: &mut Training) -> Result<(), Failure> {
     let mut line = ProgressLine::new(args.samples, " samples");
     let threads = at_a_time(args.jobs, usize::MAX);
-    let result = training.run(course, threads, &args.out, |progress| {
+    let result = training.run(curriculum, threads, &args.out, |progress| {
         let [done, all] = progress.samples;
         line.expect(all);
         line.reach(done, &format!(", loss {:.2}", progress.loss));
@@ -111,6 +111,6 @@ fn failure(error: PolicyError) -> Failure {
         | PolicyError::TooManyLevels(_)
         | PolicyError::NothingSeen
         | PolicyError::Damaged { .. }
-        | PolicyError::OtherCourse { .. } => Failure::input(error),
+        | PolicyError::OtherCurriculum { .. } => Failure::input(error),
     }
 }

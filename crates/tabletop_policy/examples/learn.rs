@@ -4,7 +4,7 @@
 use std::{ops::ControlFlow, path::Path, time::Instant};
 
 use tabletop_episodes::multiplication::{Multiplication, Variation};
-use tabletop_policy::{Course, Training, loss_curve};
+use tabletop_policy::{Curriculum, Training, loss_curve};
 use tabletop_recorder::RecordingReader;
 
 fn main() {
@@ -20,11 +20,11 @@ fn main() {
         ..Variation::default()
     };
     let multiplication = Multiplication::of(&recording, None, variation, 0).unwrap();
-    let course = Course::new(&multiplication, 20_000).unwrap();
-    let mut training = Training::resume(file, &course, samples, 0).unwrap();
+    let curriculum = Curriculum::new(&multiplication, 20_000).unwrap();
+    let mut training = Training::resume(file, &curriculum, samples, 0).unwrap();
     let start = Instant::now();
     training
-        .run(&course, 1, file, |progress| {
+        .run(&curriculum, 1, file, |progress| {
             let [done, all] = progress.samples;
             if done % 800 == 0 {
                 println!(
@@ -45,7 +45,7 @@ fn main() {
     let start = Instant::now();
     let evaluation = training
         .policy()
-        .evaluate(&course, number(3, 100.0) as u64)
+        .evaluate(&curriculum, number(3, 100.0) as u64)
         .unwrap();
     println!(
         "{} done, {} moves, pick error {:.3}, failed {:?}, {:?}",

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use tabletop_core::Random;
 
 use crate::planes::Planes;
@@ -128,14 +128,11 @@ impl Convolution {
     }
 
     fn convolve(&self, packed: &[f32], biases: &[f32], input: &Planes, output: &mut Planes) {
-        // With the widest vectors that this processor has.
-        Arch::new().dispatch(
-            #[inline(always)]
-            || match self.side {
-                1 => convolve::<1>(packed, biases, input, output),
-                _ => convolve::<3>(packed, biases, input, output),
-            },
-        );
+        let arch = Arch::new();
+        match self.side {
+            1 => arch.dispatch(Forward::<1>(packed, biases, input, output)),
+            _ => arch.dispatch(Forward::<3>(packed, biases, input, output)),
+        }
         output.clear_borders();
     }
 
@@ -145,13 +142,35 @@ impl Convolution {
             *bias += plane.iter().sum::<f32>();
         }
         let weights = &mut sum[self.weights()];
-        Arch::new().dispatch(
-            #[inline(always)]
-            || match self.side {
-                1 => add_gradient::<1>(input, gradient, weights),
-                _ => add_gradient::<3>(input, gradient, weights),
-            },
-        );
+        let arch = Arch::new();
+        match self.side {
+            1 => arch.dispatch(OfWeights::<1>(input, gradient, weights)),
+            _ => arch.dispatch(OfWeights::<3>(input, gradient, weights)),
+        }
+    }
+}
+
+/// [`convolve`] with the widest vectors that this processor has.
+struct Forward<'a, const SIDE: usize>(&'a [f32], &'a [f32], &'a Planes, &'a mut Planes);
+
+impl<const SIDE: usize> WithSimd for Forward<'_, SIDE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        convolve::<SIDE>(self.0, self.1, self.2, self.3);
+    }
+}
+
+/// [`add_gradient`], likewise.
+struct OfWeights<'a, const SIDE: usize>(&'a Planes, &'a Planes, &'a mut [f32]);
+
+impl<const SIDE: usize> WithSimd for OfWeights<'_, SIDE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        add_gradient::<SIDE>(self.0, self.1, self.2);
     }
 }
 

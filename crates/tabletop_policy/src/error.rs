@@ -24,7 +24,7 @@ pub enum PolicyError {
     #[error("{path}: {fault}", path = .path.display())]
     Damaged { path: PathBuf, fault: String },
     #[error("{path}: it was learned from another demonstration or with other options; name another file", path = .path.display())]
-    OtherCourse { path: PathBuf },
+    OtherCurriculum { path: PathBuf },
     #[error("{path}: {source}", path = .path.display())]
     Io { path: PathBuf, source: io::Error },
 }

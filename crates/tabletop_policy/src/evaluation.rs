@@ -10,7 +10,7 @@ use tabletop_geometry::{Pose, turn_about_z};
 use tabletop_task::{Arrangement, Binding, Symmetry, Task};
 
 use crate::{
-    course::Course,
+    curriculum::Curriculum,
     error::PolicyError,
     policy::{Decision, ObjectPlace, Policy},
     still_scene::{StillScene, heading},
@@ -58,17 +58,17 @@ const TOLERANCE: f32 = 0.25;
 const MOST_ALIKE: usize = 4;
 
 impl Policy {
-    /// Does the task in `count` scenes of a course that it has not learned from.
+    /// Does the task in `count` scenes of a curriculum that it has not learned from.
     ///
     /// # Errors
     /// There are no such scenes.
-    pub fn evaluate(&self, course: &Course, count: u64) -> Result<Evaluation, PolicyError> {
+    pub fn evaluate(&self, curriculum: &Curriculum, count: u64) -> Result<Evaluation, PolicyError> {
         let mut evaluation = Evaluation::default();
         let mut rasterizer = Rasterizer::alone();
-        for number in course.count()..course.count() + count {
-            let (beginning, scene) = course.begin(number)?;
+        for number in curriculum.count()..curriculum.count() + count {
+            let (beginning, scene) = curriculum.begin(number)?;
             let result = self.act(
-                course.task(),
+                curriculum.task(),
                 &beginning,
                 scene,
                 &mut rasterizer,

@@ -8,14 +8,14 @@ use crate::{planes::Planes, unet::Response};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Label {
     /// To take what is at one mark, and put it down at another.
-    Move { pick: Mark, place: Mark },
+    Move { pick: HeatMark, place: HeatMark },
     /// Nothing.
     Done,
 }
 
 /// Where the origin of an object is or shall be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Mark {
+pub(crate) struct HeatMark {
     /// Its pixel in the view; the centre of the upper left one is (0, 0).
     pub at: Vec2,
     /// Its height: an index in the list of heights of the task.
@@ -119,7 +119,7 @@ impl LabelPlanes {
     }
 
     /// The mark of a part: the mean over a window round the hottest pixel, weighted by heat.
-    fn mark(&self, planes: &Planes, part: Part) -> Mark {
+    fn mark(&self, planes: &Planes, part: Part) -> HeatMark {
         let heat = self.first(part);
         let (column, row, most) = peak(planes, heat);
         let columns = column.saturating_sub(REACH)..=(column + REACH).min(planes.width() - 1);
@@ -137,7 +137,7 @@ impl LabelPlanes {
         let (levels, heading) = rest.split_at(self.levels);
         let pairs = heading.as_chunks::<2>().0;
         let level = (0..levels.len()).max_by(|&a, &b| levels[a].total_cmp(&levels[b]));
-        Mark {
+        HeatMark {
             at: (at / weights) * COARSENESS + (COARSENESS - 1.0) / 2.0,
             level: level.unwrap_or(0),
             heading: Heading(std::array::from_fn(|i| Vec2::from(pairs[i]) / weights)),
@@ -167,7 +167,13 @@ impl LabelPlanes {
     }
 
     /// The loss of a mark's level and heading at its place.
-    fn mark_loss(&self, planes: &Planes, heat: usize, mark: &Mark, gradient: &mut Planes) -> f32 {
+    fn mark_loss(
+        &self,
+        planes: &Planes,
+        heat: usize,
+        mark: &HeatMark,
+        gradient: &mut Planes,
+    ) -> f32 {
         let mut loss = 0.0;
         for (column, row, share) in neighbours(mark, planes) {
             let levels: Vec<_> = (0..self.levels)
@@ -199,7 +205,7 @@ fn heat_loss(
     planes: &Planes,
     plane: usize,
     whole: Option<f32>,
-    mark: Option<&Mark>,
+    mark: Option<&HeatMark>,
     gradient: &mut Planes,
 ) -> (f32, f32) {
     let most = peak(planes, plane).2;
@@ -245,7 +251,7 @@ fn peak(planes: &Planes, plane: usize) -> (usize, usize, f32) {
 }
 
 /// The four pixels around a mark, and their shares in bilinear interpolation.
-fn neighbours(mark: &Mark, planes: &Planes) -> [(usize, usize, f32); 4] {
+fn neighbours(mark: &HeatMark, planes: &Planes) -> [(usize, usize, f32); 4] {
     let last = Vec2::new(planes.width() as f32, planes.height() as f32) - 1.0;
     let at = (mark.at - (COARSENESS - 1.0) / 2.0) / COARSENESS;
     let at = at.clamp(Vec2::ZERO, last);
@@ -283,7 +289,7 @@ mod tests {
     fn a_mark_between_pixels_is_found_again() {
         let labels = LabelPlanes { levels: 2 };
         let mut planes = Planes::new(labels.planes(), 32, 32);
-        let wanted = Mark {
+        let wanted = HeatMark {
             at: Vec2::new(20.4, 31.3),
             level: 1,
             heading: Heading::of(&[0.7]),

@@ -1,6 +1,6 @@
 //! A policy learned from one demonstration: from the head camera's picture to what is to be taken next, and where it is to be put.
 //!
-//! A [`Course`] draws scenes in which the task of a demonstration begins, and shows the task step by step. A [`Training`] makes a [`Policy`] of it, a network that
+//! A [`Curriculum`] draws scenes in which the task of a demonstration begins, and shows the task step by step. A [`Training`] makes a [`Policy`] of it, a network that
 //! looks at the picture, warped onto the table, and answers with two marks: pick and place, each with height and yaw; or that the task is done.
 //! The network is our own: a small U-Net with the same bits on every processor and with any number of threads.
 
@@ -8,7 +8,7 @@
 
 mod adam;
 mod convolution;
-mod course;
+mod curriculum;
 mod error;
 mod evaluation;
 mod label;
@@ -24,7 +24,7 @@ mod test_recording;
 mod training;
 mod unet;
 
-pub use course::Course;
+pub use curriculum::Curriculum;
 pub use error::PolicyError;
 pub use evaluation::{Evaluation, PolicyFailure};
 pub use label::Yaw;

@@ -9,7 +9,7 @@ use tabletop_storage::{Symlinks, read_regular_file};
 
 use crate::{
     error::PolicyError,
-    label::{Label, LabelPlanes, MOST_LEVELS, Mark, Yaw},
+    label::{HeatMark, Label, LabelPlanes, MOST_LEVELS, Yaw},
     planes::Planes,
     table_view::{PLANES, point_before, view_of},
     tensor_file::{Tensor, TensorFile},
@@ -86,7 +86,7 @@ impl Policy {
     /// What is to be done next, after a picture that this camera took.
     pub fn decide(&self, picture: &Picture, camera: &Camera) -> Decision {
         let eye = camera.pose.location;
-        let place_of = |mark: Mark| ObjectPlace {
+        let place_of = |mark: HeatMark| ObjectPlace {
             location: point_before(eye, mark.at, self.levels[mark.level]),
             yaw: mark.heading.yaw(),
         };

@@ -12,13 +12,13 @@ use tabletop_storage::Storage;
 
 use crate::{
     adam::Adam,
-    course::Course,
+    curriculum::Curriculum,
     error::PolicyError,
     policy::{Policy, read_file},
     tensor_file::{Tensor, TensorFile},
 };
 
-/// The training of a policy. Where it has come to is a file; the same course and options lead to the same bits, whatever the number of threads and however
+/// The training of a policy. Where it has come to is a file; the same curriculum and options lead to the same bits, whatever the number of threads and however
 /// often it was interrupted.
 #[derive(Clone, Debug)]
 pub struct Training {
@@ -27,7 +27,7 @@ pub struct Training {
     /// The mean loss of each batch.
     losses: Vec<f32>,
     samples: u64,
-    /// That of course and options.
+    /// That of curriculum and options.
     fingerprint: String,
 }
 
@@ -56,18 +56,21 @@ const SAVED_AFTER: usize = 100;
 const MEANS: &str = "training.means";
 const SQUARES: &str = "training.squares";
 const LOSSES: &str = "training.losses";
-const COURSE: &str = "course";
+const CURRICULUM: &str = "curriculum";
 
 impl Training {
     /// A training that begins, with this many samples.
-    pub fn new(course: &Course, samples: u64, seed: u64) -> Self {
-        let policy = Policy::new(course.levels().to_vec(), seed);
+    pub fn new(curriculum: &Curriculum, samples: u64, seed: u64) -> Self {
+        let policy = Policy::new(curriculum.levels().to_vec(), seed);
         Self {
             adam: Adam::new(policy.parameters.len()),
             policy,
             losses: Vec::new(),
             samples,
-            fingerprint: format!("{samples} samples, seed {seed}: {}", course.fingerprint()),
+            fingerprint: format!(
+                "{samples} samples, seed {seed}: {}",
+                curriculum.fingerprint()
+            ),
         }
     }
 
@@ -77,18 +80,18 @@ impl Training {
     /// The file cannot be read, or is of another training.
     pub fn resume(
         path: &Path,
-        course: &Course,
+        curriculum: &Curriculum,
         samples: u64,
         seed: u64,
     ) -> Result<Self, PolicyError> {
-        let mut training = Self::new(course, samples, seed);
+        let mut training = Self::new(curriculum, samples, seed);
         if !path.exists() {
             return Ok(training);
         }
         let mut file = read_file(path)?;
-        if file.metadata.get(COURSE) != Some(&training.fingerprint) {
+        if file.metadata.get(CURRICULUM) != Some(&training.fingerprint) {
             let path = path.to_owned();
-            return Err(PolicyError::OtherCourse { path });
+            return Err(PolicyError::OtherCurriculum { path });
         }
         training.policy = Policy::of_file(&file).map_err(PolicyError::damaged(path))?;
         let parameters = training.policy.parameters.len();
@@ -128,10 +131,10 @@ impl Training {
     /// Learns until the end, or until `report`, which is called after each batch, breaks. Saves the training in the file every few seconds and when it stops.
     ///
     /// # Errors
-    /// The file cannot be written, or the course cannot go on.
+    /// The file cannot be written, or the curriculum cannot go on.
     pub fn run(
         &mut self,
-        course: &Course,
+        curriculum: &Curriculum,
         threads: usize,
         path: &Path,
         mut report: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
@@ -139,7 +142,7 @@ impl Training {
         let mut rasterizers = vec![Rasterizer::alone(); threads.clamp(1, BATCH)];
         let (start, first) = (Instant::now(), self.losses.len());
         while !self.is_finished() {
-            self.learn(course, &mut rasterizers)?;
+            self.learn(curriculum, &mut rasterizers)?;
             let now = self.losses.len();
             let seconds = start.elapsed().as_secs_f64() / (now - first) as f64;
             let recent = &self.losses[now.saturating_sub(SAVED_AFTER)..];
@@ -165,7 +168,7 @@ impl Training {
     /// Learns from a batch, a part of it on each thread.
     fn learn(
         &mut self,
-        course: &Course,
+        curriculum: &Curriculum,
         rasterizers: &mut [Rasterizer],
     ) -> Result<(), PolicyError> {
         let policy = &self.policy;
@@ -179,7 +182,10 @@ impl Training {
                     scope.spawn(move || {
                         let own = (thread..BATCH).step_by(threads);
                         own.map(|i| {
-                            Ok((i, gradient(policy, course, first + i as u64, rasterizer)?))
+                            Ok((
+                                i,
+                                gradient(policy, curriculum, first + i as u64, rasterizer)?,
+                            ))
                         })
                         .collect::<Result<Vec<_>, PolicyError>>()
                     })
@@ -216,7 +222,7 @@ impl Training {
     fn to_file(&self) -> TensorFile {
         let mut file = self.policy.to_file();
         file.metadata
-            .insert(COURSE.into(), self.fingerprint.clone());
+            .insert(CURRICULUM.into(), self.fingerprint.clone());
         let mut put = |name: &str, numbers: &[f32]| {
             let (shape, numbers) = (vec![numbers.len()], numbers.to_vec());
             file.tensors.insert(name.into(), Tensor { shape, numbers });
@@ -233,11 +239,11 @@ impl Training {
 /// The loss of a sample, and its gradient.
 fn gradient(
     policy: &Policy,
-    course: &Course,
+    curriculum: &Curriculum,
     number: u64,
     rasterizer: &mut Rasterizer,
 ) -> Result<(f32, Vec<f32>), PolicyError> {
-    let sample = course.sample(number, rasterizer)?;
+    let sample = curriculum.sample(number, rasterizer)?;
     let Policy {
         net,
         planes,
@@ -274,14 +280,14 @@ mod tests {
     use super::*;
     use crate::test_recording::record;
 
-    fn trained(course: &Course, threads: usize, file: &Path, interrupted: bool) -> Vec<u8> {
+    fn trained(curriculum: &Curriculum, threads: usize, file: &Path, interrupted: bool) -> Vec<u8> {
         loop {
-            let mut training = Training::resume(file, course, 24, 5).unwrap();
+            let mut training = Training::resume(file, curriculum, 24, 5).unwrap();
             let stop = |_: &TrainingProgress| match interrupted {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             };
-            training.run(course, threads, file, stop).unwrap();
+            training.run(curriculum, threads, file, stop).unwrap();
             if training.is_finished() {
                 return fs::read(file).unwrap();
             }
@@ -301,14 +307,17 @@ mod tests {
             ..Variation::default()
         };
         let multiplication = Multiplication::of(&recording, None, variation, 1).unwrap();
-        let course = Course::new(&multiplication, 100).unwrap();
-        assert_eq!(course.levels().len(), 2);
+        let curriculum = Curriculum::new(&multiplication, 100).unwrap();
+        assert_eq!(curriculum.levels().len(), 2);
         let file = |name: &str| folder.path().join(name);
-        let plain = trained(&course, 1, &file("plain"), false);
-        assert!(trained(&course, 3, &file("threads"), false) == plain);
-        assert!(trained(&course, 2, &file("interrupted"), true) == plain);
+        let plain = trained(&curriculum, 1, &file("plain"), false);
+        assert!(trained(&curriculum, 3, &file("threads"), false) == plain);
+        assert!(trained(&curriculum, 2, &file("interrupted"), true) == plain);
         assert!(Policy::read(&file("plain")).is_ok());
-        let other = Training::resume(&file("plain"), &course, 25, 5).unwrap_err();
-        assert!(matches!(other, PolicyError::OtherCourse { .. }), "{other}");
+        let other = Training::resume(&file("plain"), &curriculum, 25, 5).unwrap_err();
+        assert!(
+            matches!(other, PolicyError::OtherCurriculum { .. }),
+            "{other}"
+        );
     }
 }

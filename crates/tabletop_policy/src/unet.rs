@@ -174,10 +174,10 @@ mod tests {
     use bevy::math::Vec2;
 
     use super::*;
-    use crate::label::{Heading, Label, LabelPlanes, Mark};
+    use crate::label::{Heading, HeatMark, Label, LabelPlanes};
 
-    fn mark(x: f32, y: f32, level: usize) -> Mark {
-        Mark {
+    fn mark(x: f32, y: f32, level: usize) -> HeatMark {
+        HeatMark {
             at: Vec2::new(x, y),
             level,
             heading: Heading::of(&[0.3]),

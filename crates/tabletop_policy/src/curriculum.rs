@@ -1,4 +1,4 @@
-//! Courses: samples of what a demonstration shows, without end.
+//! Curricula: samples of what a demonstration shows, without end.
 
 use bevy::math::{Quat, Vec2};
 use tabletop_camera::Rasterizer;
@@ -9,7 +9,7 @@ use tabletop_task::{Role, Task, TaskStep};
 
 use crate::{
     error::PolicyError,
-    label::{Label, MOST_LEVELS, Mark},
+    label::{HeatMark, Label, MOST_LEVELS},
     planes::Planes,
     still_scene::{StillScene, heading},
     table_view::{pixel_behind, view_of},
@@ -26,7 +26,7 @@ const MIXER: u64 = 0xd6e8_feb8_6659_fd93;
 
 /// What there is to learn: scenes in which a task begins, drawn from one demonstration.
 #[derive(Debug)]
-pub struct Course<'a> {
+pub struct Curriculum<'a> {
     multiplication: &'a Multiplication,
     /// The heights at which objects are taken and put, in units, ascending.
     levels: Vec<f32>,
@@ -39,8 +39,8 @@ pub(crate) struct Sample {
     pub label: Label,
 }
 
-impl<'a> Course<'a> {
-    /// The course of the first `count` scenes.
+impl<'a> Curriculum<'a> {
+    /// The curriculum of the first `count` scenes.
     ///
     /// # Errors
     /// The task has steps that a policy cannot do, or too many heights.
@@ -49,14 +49,14 @@ impl<'a> Course<'a> {
         if let Some(step) = task.steps.iter().find(|step| step.goal.is_none()) {
             return Err(PolicyError::NoPlace(step.number));
         }
-        let mut course = Self {
+        let mut curriculum = Self {
             multiplication,
             levels: Vec::new(),
             count: count.max(1),
         };
-        course.levels = course.heights()?;
-        match course.levels.len() {
-            0..=MOST_LEVELS => Ok(course),
+        curriculum.levels = curriculum.heights()?;
+        match curriculum.levels.len() {
+            0..=MOST_LEVELS => Ok(curriculum),
             more => Err(PolicyError::TooManyLevels(more)),
         }
     }
@@ -151,7 +151,7 @@ impl<'a> Course<'a> {
         };
         let (id, role, goal) = handled(self.task(), step, &scene, &beginning)?;
         let from = scene.pose(&id).unwrap_or_default();
-        let [pick, place] = [from, goal].map(|pose| Mark {
+        let [pick, place] = [from, goal].map(|pose| HeatMark {
             at: pixel_behind(scene.camera.pose.location, pose.location),
             level: self.level_of(pose.location.z),
             heading: heading(&role.symmetry, pose),
