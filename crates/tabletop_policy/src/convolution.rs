@@ -1,19 +1,18 @@
 //! Convolutions, forward and backward.
 //!
 //! Each output number has an accumulator of its own, to which products are added one after the other, in the order of the inputs. The compiler
-//! turns neighbouring accumulators into vectors, as wide as the processor has, and fuses nothing, so the bits are those of the plain loop on every processor.
+//! turns neighbouring accumulators into vectors and fuses nothing, so the bits are those of the plain loop on every processor.
 
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
 use tabletop_core::Random;
 
 use crate::planes::Planes;
 
 /// Outputs of a convolution are a multiple of this.
 pub(crate) const BLOCK: usize = 16;
-/// Output planes, and neighbouring pixels, that are summed at once: as many as a processor with 16 vectors of eight has room for.
-const TILE: [usize; 2] = [4, 24];
+/// Output planes, and neighbouring pixels, that are summed at once: as many as a processor with 16 vectors of four has room for.
+const TILE: [usize; 2] = [4, 12];
 /// Pixels over which a weight's gradient is summed at a time, so that they stay in the nearest cache.
 const CHUNK: usize = 256;
 
@@ -128,10 +127,9 @@ impl Convolution {
     }
 
     fn convolve(&self, packed: &[f32], biases: &[f32], input: &Planes, output: &mut Planes) {
-        let arch = Arch::new();
         match self.side {
-            1 => arch.dispatch(Forward::<1>(packed, biases, input, output)),
-            _ => arch.dispatch(Forward::<3>(packed, biases, input, output)),
+            1 => convolve::<1>(packed, biases, input, output),
+            _ => convolve::<3>(packed, biases, input, output),
         }
         output.clear_borders();
     }
@@ -142,39 +140,13 @@ impl Convolution {
             *bias += plane.iter().sum::<f32>();
         }
         let weights = &mut sum[self.weights()];
-        let arch = Arch::new();
         match self.side {
-            1 => arch.dispatch(OfWeights::<1>(input, gradient, weights)),
-            _ => arch.dispatch(OfWeights::<3>(input, gradient, weights)),
+            1 => add_gradient::<1>(input, gradient, weights),
+            _ => add_gradient::<3>(input, gradient, weights),
         }
     }
 }
 
-/// [`convolve`] with the widest vectors that this processor has.
-struct Forward<'a, const SIDE: usize>(&'a [f32], &'a [f32], &'a Planes, &'a mut Planes);
-
-impl<const SIDE: usize> WithSimd for Forward<'_, SIDE> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        convolve::<SIDE>(self.0, self.1, self.2, self.3);
-    }
-}
-
-/// [`add_gradient`], likewise.
-struct OfWeights<'a, const SIDE: usize>(&'a Planes, &'a Planes, &'a mut [f32]);
-
-impl<const SIDE: usize> WithSimd for OfWeights<'_, SIDE> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        add_gradient::<SIDE>(self.0, self.1, self.2);
-    }
-}
-
-#[inline(always)]
 fn convolve<const SIDE: usize>(
     packed: &[f32],
     biases: &[f32],
@@ -215,7 +187,6 @@ fn convolve<const SIDE: usize>(
     }
 }
 
-#[inline(always)]
 fn add_gradient<const SIDE: usize>(input: &Planes, gradient: &Planes, sum: &mut [f32]) {
     let (first, pitch, span) = (input.first(), input.pitch(), input.span());
     let corner = (first - 1 - pitch) + (3 - SIDE) / 2 * (pitch + 1);
