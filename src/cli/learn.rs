@@ -42,7 +42,7 @@ pub(super) struct LearnArgs {
     seed: u64,
     #[command(flatten)]
     variation: VariationOptions,
-    /// Number of threads, from 1 to 256, of which at most eight have work [default: the number of cores]
+    /// Number of threads, from 1 to 256, of which at most four have work [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
 }
@@ -77,7 +77,11 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn learn(args: &LearnArgs, curriculum: &Curriculum, training: &mut Training) -> Result<(), Failure> {
+fn learn(
+    args: &LearnArgs,
+    curriculum: &Curriculum,
+    training: &mut Training,
+) -> Result<(), Failure> {
     let mut line = ProgressLine::new(args.samples, " samples");
     let threads = at_a_time(args.jobs, usize::MAX);
     let result = training.run(curriculum, threads, &args.out, |progress| {

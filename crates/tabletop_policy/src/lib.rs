@@ -3,6 +3,22 @@
 //! A [`Curriculum`] draws scenes in which the task of a demonstration begins, and shows the task step by step. A [`Training`] makes a [`Policy`] of it, a network that
 //! looks at the picture, warped onto the table, and answers with two marks: pick and place, each with height and yaw; or that the task is done.
 //! The network is our own: a small U-Net with the same bits on every processor and with any number of threads.
+//!
+//! ```no_run
+//! use std::{ops::ControlFlow, path::Path};
+//! use tabletop_episodes::multiplication::{Multiplication, Variation};
+//! use tabletop_policy::{Curriculum, Training};
+//! use tabletop_recorder::RecordingReader;
+//!
+//! let recording = RecordingReader::open("demo")?;
+//! let multiplication = Multiplication::of(&recording, None, Variation::default(), 0)?;
+//! let curriculum = Curriculum::new(&multiplication, 2000)?;
+//! let file = Path::new("policy.safetensors");
+//! let mut training = Training::resume(file, &curriculum, 40_000, 0)?;
+//! training.run(&curriculum, 2, file, |_| ControlFlow::Continue(()))?;
+//! println!("{} of 100", training.policy().evaluate(&curriculum, 100)?.done.len());
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
