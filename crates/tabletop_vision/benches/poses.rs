@@ -10,9 +10,12 @@ mod scenes;
 
 use std::time::Instant;
 
-use scenes::{Difficulty, TASKS};
+use bevy::math::Vec3;
+use scenes::{Difficulty, TASKS, TaskScene};
 use tabletop_vision::{Eyes, KnownScenery};
 
+/// Number of pictures in which an object is followed.
+const FRAMES: u32 = 40;
 /// Number of looks at each picture.
 const REPEATED: usize = 3;
 
@@ -88,6 +91,9 @@ fn main() {
         "most"
     );
     for task in TASKS.iter().filter(|task| task.name.contains(&wanted)) {
+        follow(task);
+    }
+    for task in TASKS.iter().filter(|task| task.name.contains(&wanted)) {
         for (name, own) in DIFFICULTIES.iter().filter(|it| it.0.contains(&difficulty)) {
             let (mut errors, mut times) = (Vec::new(), Vec::new());
             for seed in 0..count {
@@ -140,4 +146,31 @@ fn main() {
             );
         }
     }
+}
+
+/// Follows the last object, which is lifted and carried, through pictures, and prints its largest error and the time of a picture.
+fn follow(task: &TaskScene) {
+    let sample = task.sample(&EASY, 3);
+    let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+    eyes.look(&sample.picture, &KnownScenery::default());
+    let mut poses = sample.poses.clone();
+    let last = poses.len() - 1;
+    let start = poses[last].location;
+    let (mut largest, mut total) = (0.0_f32, 0.0);
+    for frame in 1..=FRAMES {
+        let time = frame as f32 / 10.0;
+        let aside = (time - 2.0).max(0.0);
+        poses[last].location = start + Vec3::new(aside, 0.3 * aside, time.min(2.0));
+        let picture = sample.with_poses(&poses);
+        let begin = Instant::now();
+        let seen = eyes.look(&picture, &KnownScenery::default());
+        total += begin.elapsed().as_secs_f64() * 1e3;
+        let pose = seen.objects[last].pose.unwrap();
+        largest = largest.max(pose.location.distance(poses[last].location));
+    }
+    println!(
+        "{:12} following    largest error {largest:.4}, {:.1} ms a picture",
+        task.name,
+        total / f64::from(FRAMES)
+    );
 }

@@ -4,10 +4,10 @@ use bevy::math::Vec3;
 use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
-    guess::{Candidate, Guess},
-    known::{KnownObject, Placement},
-    refine::{FINE, Refinement, Stage, TRACKING},
-    residual::{OUTLIER, Residual, Trial, loss, rows},
+    guess::{Guess, PoseCandidate},
+    known::{KnownObject, StandingPose},
+    refine::{FINE, Refinement, RefinementStage, TRACKING},
+    residual::{OUTLIER, Residual, TriedFit, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
     support,
 };
@@ -22,7 +22,7 @@ const SUPPORTED: f32 = 0.05;
 const FINALLY_SUPPORTED: f32 = 0.3;
 const STILL_SUPPORTED: f32 = 0.003;
 /// The loss of a pixel, on average, above which an object is explained badly, without noise.
-const BAD: f32 = 150.0;
+const BAD: f32 = 400.0;
 /// The largest height, in units, on which objects that nothing is known about are looked for.
 const HIGHEST: f32 = 4.0;
 /// The part of what it should explain above which an object is placed without a look at other places, at first and when that was not good.
@@ -34,11 +34,11 @@ const GOOD: f32 = 25.0;
 const ATTEMPTS: usize = 4;
 
 /// The placements of all objects, compared with a picture.
-pub(crate) struct Arrangement<'a, 'p> {
+pub(crate) struct ObjectArrangement<'a, 'p> {
     pub objects: &'a [KnownObject],
     pub residual: Residual<'p>,
     /// The placement of each object, if it is known, and the window in which it may be seen.
-    pub placements: Vec<Option<Placement>>,
+    pub placements: Vec<Option<StandingPose>>,
     windows: Vec<Option<PictureWindow>>,
     /// The known colour that each pixel shows, and that of each object.
     classes: Vec<u8>,
@@ -56,11 +56,11 @@ pub(crate) struct Arrangement<'a, 'p> {
 /// The placements, to come back to.
 #[derive(Clone)]
 struct Remembered {
-    placements: Vec<Option<Placement>>,
+    placements: Vec<Option<StandingPose>>,
     loss: f64,
 }
 
-impl<'a, 'p> Arrangement<'a, 'p> {
+impl<'a, 'p> ObjectArrangement<'a, 'p> {
     /// Without any object.
     pub fn empty(objects: &'a [KnownObject], residual: Residual<'p>) -> Self {
         let palette = Palette::of(objects.iter().flat_map(KnownObject::colors));
@@ -134,7 +134,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
         self.residual.keep(&solids, window);
     }
 
-    pub fn window_at(&self, object: usize, placement: &Placement) -> Option<PictureWindow> {
+    pub fn window_at(&self, object: usize, placement: &StandingPose) -> Option<PictureWindow> {
         let mut solids = Vec::new();
         self.objects[object].draw(placement, 1, &mut solids);
         let window = self.residual.window_of(&solids)?;
@@ -142,7 +142,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// Places an object, or takes it away.
-    pub fn place(&mut self, object: usize, placement: Option<Placement>) {
+    pub fn place(&mut self, object: usize, placement: Option<StandingPose>) {
         let before = self.windows[object].take();
         self.placements[object] = placement;
         let now = placement.and_then(|placement| self.window_at(object, &placement));
@@ -175,7 +175,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// Finds all objects, if it is known of none where it was before; else follows those.
-    pub fn begin(&mut self, before: &[Option<Placement>]) {
+    pub fn begin(&mut self, before: &[Option<StandingPose>]) {
         if before.iter().all(Option::is_none) {
             self.arrange(&mut || 1.0);
         } else {
@@ -184,7 +184,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// Begins with objects where they were found in another light.
-    pub fn begin_again(&mut self, found: &[Option<Placement>]) {
+    pub fn begin_again(&mut self, found: &[Option<StandingPose>]) {
         for (i, placement) in found.iter().enumerate() {
             self.place(i, *placement);
         }
@@ -197,7 +197,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere.
-    fn follow(&mut self, before: &[Option<Placement>]) {
+    fn follow(&mut self, before: &[Option<StandingPose>]) {
         self.allowance = STILL_SUPPORTED;
         for (i, placement) in before.iter().enumerate() {
             self.place(i, *placement);
@@ -240,20 +240,20 @@ impl<'a, 'p> Arrangement<'a, 'p> {
 
     /// Finds all objects without a placement, the one that explains most of its pixels first.
     fn find_all(&mut self, chance: &mut impl FnMut() -> f32) {
-        let mut candidates: Vec<Option<Option<Candidate>>> = vec![None; self.objects.len()];
+        let mut candidates: Vec<Option<Option<PoseCandidate>>> = vec![None; self.objects.len()];
         while let Some((object, placement)) = self.next_found(&mut candidates, chance) {
             self.place(object, Some(placement));
             let window = self.windows[object].clone().unwrap_or_default();
             let wide = window.widened(4, self.residual.size());
-            for i in 0..self.objects.len() {
-                let is_stale = candidates[i].as_ref().is_some_and(|candidate| {
+            for (i, candidate) in candidates.iter_mut().enumerate() {
+                let is_stale = candidate.as_ref().is_some_and(|candidate| {
                     self.colors[i] == self.colors[object]
                         || candidate.as_ref().is_none_or(|candidate| {
                             !candidate.window.intersection(&wide).is_empty()
                         })
                 });
                 if is_stale {
-                    candidates[i] = None;
+                    *candidate = None;
                 }
             }
         }
@@ -262,9 +262,9 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     /// The object to be placed next: the first one that is well explained, beginning with those of which most is seen; else the best.
     fn next_found(
         &mut self,
-        candidates: &mut [Option<Option<Candidate>>],
+        candidates: &mut [Option<Option<PoseCandidate>>],
         chance: &mut impl FnMut() -> f32,
-    ) -> Option<(usize, Placement)> {
+    ) -> Option<(usize, StandingPose)> {
         let open = (0..self.objects.len()).filter(|&i| {
             // Of objects that look the same, the first one is looked for.
             let is_alike = |j: usize| self.objects[j] == self.objects[i];
@@ -277,7 +277,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             .filter_map(|i| Some((i, self.guess(i)?.promise() * chance())))
             .collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut best: Option<(usize, Placement, f32)> = None;
+        let mut best: Option<(usize, StandingPose, f32)> = None;
         for (i, _) in order {
             if candidates[i].is_none() {
                 candidates[i] = Some(self.guess(i).and_then(|mut guess| guess.best()));
@@ -348,7 +348,7 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// Refines an object among the others: on what it stands on, or in the air. Returns by how much, in units, it moved.
-    fn settle(&mut self, object: usize, stages: &[Stage], is_last: bool) -> f32 {
+    fn settle(&mut self, object: usize, stages: &[RefinementStage], is_last: bool) -> f32 {
         let Some(before) = self.placements[object] else {
             return 0.0;
         };
@@ -404,6 +404,11 @@ impl<'a, 'p> Arrangement<'a, 'p> {
             };
         }
         if is_last {
+            let trial = refinement.try_at(&settled, OUTLIER);
+            let is_good = trial.misfit <= good * trial.pixels as f32;
+            if !is_good {
+                settled = refinement.shaken(settled).0;
+            }
             settled = refinement.polished(settled, 0.004).0;
         }
         self.place(object, Some(settled));
@@ -430,7 +435,11 @@ impl<'a, 'p> Arrangement<'a, 'p> {
                         && near.is_some_and(|(own, other)| !own.intersection(other).is_empty())
                 });
                 if is_touched || is_last {
-                    let stages = if is_end { &FINE[1..] } else { &FINE[..1] };
+                    let stages = match (is_end, round) {
+                        (false, _) => &FINE[..1],
+                        (true, 0) => &FINE[..],
+                        (true, _) => &FINE[1..],
+                    };
                     has_moved[i] = self.settle(i, stages, is_last) > 1e-3;
                 }
             }
@@ -438,10 +447,10 @@ impl<'a, 'p> Arrangement<'a, 'p> {
     }
 
     /// How well an object explains the pixels that show it: the loss of each, on average, and their number.
-    pub fn fit(&mut self, object: usize) -> Trial {
+    pub fn fit(&mut self, object: usize) -> TriedFit {
         let Some((placement, window)) = self.placements[object].zip(self.windows[object].clone())
         else {
-            return Trial::default();
+            return TriedFit::default();
         };
         self.keep_others(object, &window);
         let known = &self.objects[object];

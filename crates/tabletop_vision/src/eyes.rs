@@ -6,7 +6,7 @@ use tabletop_core::{Light, Picture, Table};
 use tabletop_geometry::Pose;
 
 use crate::{
-    arrangement::Arrangement,
+    arrangement::ObjectArrangement,
     clutter::{Clutter, clutter},
     identity::keep_identities,
     known::{KnownObject, YawSymmetry},
@@ -147,7 +147,7 @@ impl Eyes {
             self.camera.light = estimated(picture, &ground, &self.camera, &Light::default());
         }
         let residual = Residual::new(picture, &ground, self.camera);
-        let mut arrangement = Arrangement::empty(&self.objects, residual);
+        let mut arrangement = ObjectArrangement::empty(&self.objects, residual);
         arrangement.begin(&before);
         if self.is_light_unknown {
             for _ in 0..RELIGHTINGS {
@@ -157,7 +157,7 @@ impl Eyes {
                 self.camera.light = light;
                 let placements = arrangement.placements.clone();
                 let residual = Residual::new(picture, &ground, self.camera);
-                arrangement = Arrangement::empty(&self.objects, residual);
+                arrangement = ObjectArrangement::empty(&self.objects, residual);
                 arrangement.begin_again(&placements);
             }
         }
@@ -211,7 +211,7 @@ impl ObjectPercept {
     };
 }
 
-fn percept(arrangement: &mut Arrangement, object: usize) -> ObjectPercept {
+fn percept(arrangement: &mut ObjectArrangement, object: usize) -> ObjectPercept {
     let Some((placement, window)) =
         arrangement.placements[object].zip(arrangement.window(object).cloned())
     else {
@@ -235,7 +235,9 @@ fn percept(arrangement: &mut Arrangement, object: usize) -> ObjectPercept {
         is_free: false,
     };
     let equations = refinement.equations(&placement, STEP, true, OUTLIER);
-    let variance = arrangement.noise.max(ROUNDING);
+    // What is explained badly is known badly.
+    let unexplained = fit.misfit / (3 * fit.pixels.max(1)) as f32;
+    let variance = arrangement.noise.max(ROUNDING).max(unexplained);
     let ray = arrangement.ray_to(placement.location);
     let stance = known.stance(&placement);
     let [x, y, z, yaw] = deviations(&equations, variance, ray, stance.radius);

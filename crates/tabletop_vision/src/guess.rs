@@ -4,9 +4,9 @@ use bevy::math::Vec2;
 use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
-    known::{KnownObject, Placement, StandingSolid},
-    refine::{COARSE, FINE, Refinement, Stage},
-    residual::{OUTLIER, Residual, Trial},
+    known::{KnownObject, StandingPose, StandingSolid},
+    refine::{COARSE, FINE, Refinement, RefinementStage},
+    residual::{OUTLIER, Residual, TriedFit},
     segment::Blob,
     support::has_room,
 };
@@ -29,8 +29,8 @@ const REFINED: usize = 5;
 
 /// A placement that may be right.
 #[derive(Clone, Debug)]
-pub(crate) struct Candidate {
-    pub placement: Placement,
+pub(crate) struct PoseCandidate {
+    pub placement: StandingPose,
     /// The part that it explains of what it should: of the loss of the pixels that may show the object, and of its own.
     pub score: f32,
     /// The window in which it may be seen.
@@ -48,7 +48,7 @@ pub(crate) struct Guess<'g, 'a, 'p> {
     /// The other objects' solids, and the windows in which they may be seen.
     pub others: Vec<(PictureWindow, Vec<DrawnSolid>)>,
     /// Where other objects are, and the heights of this one on and below each: objects often stand straight on each other.
-    pub neighbours: Vec<(Placement, Vec<f32>)>,
+    pub neighbours: Vec<(StandingPose, Vec<f32>)>,
     /// What other objects take up.
     pub taken: Vec<StandingSolid>,
     /// The heights, in units, of what it may stand on, from 0 on.
@@ -64,7 +64,7 @@ struct Seed {
 
 impl Seed {
     /// The part that an object explains of what it should.
-    fn score(&self, trial: &Trial) -> f32 {
+    fn score(&self, trial: &TriedFit) -> f32 {
         -trial.gain / (self.open + trial.misfit).max(1.0)
     }
 }
@@ -81,7 +81,7 @@ impl<'p> Guess<'_, '_, 'p> {
     }
 
     /// The best candidate for the object.
-    pub fn best(&mut self) -> Option<Candidate> {
+    pub fn best(&mut self) -> Option<PoseCandidate> {
         let seeds = self.seeds();
         let mut tried = Vec::new();
         for (i, seed) in seeds.iter().enumerate() {
@@ -91,7 +91,7 @@ impl<'p> Guess<'_, '_, 'p> {
             }
         }
         tried.sort_by(|a, b| b.2.total_cmp(&a.2));
-        let mut picked: Vec<(usize, Placement)> = Vec::new();
+        let mut picked: Vec<(usize, StandingPose)> = Vec::new();
         for (i, placement, _) in tried {
             let differs = picked.iter().all(|(_, other)| {
                 let radius = self.object.stance(&placement).radius;
@@ -103,7 +103,7 @@ impl<'p> Guess<'_, '_, 'p> {
                 picked.push((i, placement));
             }
         }
-        let mut found: Vec<(usize, Placement, Trial)> = Vec::new();
+        let mut found: Vec<(usize, StandingPose, TriedFit)> = Vec::new();
         for (i, placement) in picked {
             self.keep_about(&seeds[i]);
             let Some((placement, trial)) = self.supported(&placement, 1, &COARSE) else {
@@ -116,10 +116,10 @@ impl<'p> Guess<'_, '_, 'p> {
                 }
             }
         }
-        let score = |found: &(usize, Placement, Trial)| seeds[found.0].score(&found.2);
+        let score = |found: &(usize, StandingPose, TriedFit)| seeds[found.0].score(&found.2);
         found.sort_by(|a, b| score(b).total_cmp(&score(a)));
         found.truncate(FINALISTS);
-        let mut best: Option<(usize, Placement, Trial)> = None;
+        let mut best: Option<(usize, StandingPose, TriedFit)> = None;
         for (i, placement, _) in found {
             self.keep_about(&seeds[i]);
             let other = match self.heights.len() > 1 {
@@ -139,14 +139,19 @@ impl<'p> Guess<'_, '_, 'p> {
         self.candidate(&seeds[i], &placement, &trial)
     }
 
-    fn at_other_height(&mut self, placement: &Placement) -> Option<(Placement, Trial)> {
+    fn at_other_height(&mut self, placement: &StandingPose) -> Option<(StandingPose, TriedFit)> {
         let (free, _) = self.refinement().refined(*placement, &COARSE);
         self.supported(&free, SUPPORTS, &FINE)
     }
 
-    fn candidate(&self, seed: &Seed, placement: &Placement, trial: &Trial) -> Option<Candidate> {
+    fn candidate(
+        &self,
+        seed: &Seed,
+        placement: &StandingPose,
+        trial: &TriedFit,
+    ) -> Option<PoseCandidate> {
         let window = self.window_at(placement)?;
-        (trial.gain < 0.0).then(|| Candidate {
+        (trial.gain < 0.0).then(|| PoseCandidate {
             placement: *placement,
             score: seed.score(trial),
             window,
@@ -219,26 +224,26 @@ impl<'p> Guess<'_, '_, 'p> {
     }
 
     /// The placement whose middle is seen at a pixel, with its lowest point at this height.
-    fn at(&self, pixel: Vec2, stance: usize, height: f32, yaw: f32) -> Placement {
+    fn at(&self, pixel: Vec2, stance: usize, height: f32, yaw: f32) -> StandingPose {
         let own = &self.object.stances()[stance];
         let middle = height + (own.high - own.low) / 2.0;
         let (eye, ray) = (self.residual.eye(), self.residual.camera.ray_through(pixel));
         let down = if ray.z < -1e-3 { -ray.z } else { 1e-3 };
         let location = eye + ray * ((eye.z - middle) / down).clamp(0.0, 1e3);
-        Placement {
+        StandingPose {
             location: location.truncate().extend(height - own.low),
             yaw,
             stance,
         }
     }
 
-    fn solids(&self, placement: &Placement) -> Vec<DrawnSolid> {
+    fn solids(&self, placement: &StandingPose) -> Vec<DrawnSolid> {
         let mut solids = Vec::new();
         self.object.draw(placement, 1, &mut solids);
         solids
     }
 
-    fn window_at(&self, placement: &Placement) -> Option<PictureWindow> {
+    fn window_at(&self, placement: &StandingPose) -> Option<PictureWindow> {
         self.residual.window_of(&self.solids(placement))
     }
 
@@ -261,7 +266,7 @@ impl<'p> Guess<'_, '_, 'p> {
     }
 
     /// Placements about a seed: first on the table with all yaws, then with the best of these at other heights.
-    fn tried(&mut self, seed: &Seed) -> Vec<(Placement, Trial)> {
+    fn tried(&mut self, seed: &Seed) -> Vec<(StandingPose, TriedFit)> {
         let mut tried = Vec::new();
         for stance in 0..self.object.stances().len() {
             let period = self.object.stances()[stance].symmetry.period();
@@ -289,7 +294,7 @@ impl<'p> Guess<'_, '_, 'p> {
     }
 
     /// Placements straight above or below other objects that are seen about a seed.
-    fn piled(&mut self, seed: &Seed) -> Vec<(Placement, Trial)> {
+    fn piled(&mut self, seed: &Seed) -> Vec<(StandingPose, TriedFit)> {
         /// Largest distance of the other object, in radii of this one.
         const NEAR: f32 = 3.0;
         let own = &self.object.stances()[0];
@@ -297,7 +302,7 @@ impl<'p> Guess<'_, '_, 'p> {
         let mut tried = Vec::new();
         for (neighbour, heights) in self.neighbours.clone() {
             for height in heights {
-                let placement = Placement {
+                let placement = StandingPose {
                     location: neighbour.location.truncate().extend(height - low),
                     yaw: symmetry.reduced(neighbour.yaw),
                     stance: 0,
@@ -320,7 +325,7 @@ impl<'p> Guess<'_, '_, 'p> {
         }
     }
 
-    fn trial(&mut self, placement: &Placement) -> Trial {
+    fn trial(&mut self, placement: &StandingPose) -> TriedFit {
         self.refinement().try_at(placement, OUTLIER)
     }
 }
@@ -329,10 +334,10 @@ impl Guess<'_, '_, '_> {
     /// The best placement near one among those at the heights at which the object may stand.
     fn supported(
         &mut self,
-        free: &Placement,
+        free: &StandingPose,
         count: usize,
-        stages: &[Stage],
-    ) -> Option<(Placement, Trial)> {
+        stages: &[RefinementStage],
+    ) -> Option<(StandingPose, TriedFit)> {
         let low = self.object.stance(free).low;
         let mut heights: Vec<_> = self.heights.iter().map(|height| height - low).collect();
         let distance = |height: &f32| (height - free.location.z).abs();

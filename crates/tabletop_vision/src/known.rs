@@ -74,7 +74,7 @@ pub(crate) struct StandingSolid {
 
 /// A place for an object: where it is, how it is turned about the vertical, and the number of its stance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Placement {
+pub(crate) struct StandingPose {
     pub location: Vec3,
     pub yaw: f32,
     pub stance: usize,
@@ -137,7 +137,7 @@ impl KnownObject {
         &self.stances
     }
 
-    pub(crate) fn stance(&self, placement: &Placement) -> &Stance {
+    pub(crate) fn stance(&self, placement: &StandingPose) -> &Stance {
         &self.stances[placement.stance]
     }
 
@@ -189,7 +189,7 @@ impl KnownObject {
     }
 
     /// The pose of a placement.
-    pub(crate) fn pose(&self, placement: &Placement) -> Pose {
+    pub(crate) fn pose(&self, placement: &StandingPose) -> Pose {
         let stance = self.stance(placement);
         Pose::new(
             placement.location,
@@ -198,7 +198,7 @@ impl KnownObject {
     }
 
     /// The placement nearest to a pose.
-    pub(crate) fn placement(&self, pose: Pose) -> Placement {
+    pub(crate) fn placement(&self, pose: Pose) -> StandingPose {
         let near = |(number, stance): (usize, &Stance)| {
             let turn = pose.rotation * stance.rotation.inverse();
             // The turn about the vertical that is nearest to it.
@@ -206,7 +206,7 @@ impl KnownObject {
             let upright = turn.z * turn.z + turn.w * turn.w;
             (
                 upright,
-                Placement {
+                StandingPose {
                     location: pose.location,
                     yaw: stance.symmetry.reduced(yaw),
                     stance: number,
@@ -216,18 +216,18 @@ impl KnownObject {
         let nearest = self.stances.iter().enumerate().map(near);
         nearest
             .reduce(|best, next| if next.0 > best.0 + 1e-6 { next } else { best })
-            .map_or(Placement::at(pose.location), |(_, placement)| placement)
+            .map_or(StandingPose::at(pose.location), |(_, placement)| placement)
     }
 
     /// Adds its solids at a placement to a list.
-    pub(crate) fn draw(&self, placement: &Placement, object: u32, solids: &mut Vec<DrawnSolid>) {
+    pub(crate) fn draw(&self, placement: &StandingPose, object: u32, solids: &mut Vec<DrawnSolid>) {
         let body = placement.upright();
         let stance = self.stance(placement);
         solids.extend((stance.drawn.iter()).map(|solid| DrawnSolid::of(body, solid, object)));
     }
 
     /// The convex solids that others touch, at a placement.
-    pub(crate) fn touched(&self, placement: &Placement) -> Vec<StandingSolid> {
+    pub(crate) fn touched(&self, placement: &StandingPose) -> Vec<StandingSolid> {
         let body = placement.upright();
         let solids = self.stance(placement).touched.iter();
         let standing = solids.map(|touched| StandingSolid {
@@ -240,7 +240,7 @@ impl KnownObject {
     }
 }
 
-impl Placement {
+impl StandingPose {
     /// At a location, not turned, in the first stance.
     pub const fn at(location: Vec3) -> Self {
         Self {

@@ -37,6 +37,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod arrangement;
+mod calibration;
 mod clutter;
 mod eyes;
 mod guess;
@@ -49,6 +50,7 @@ mod residual;
 mod segment;
 mod support;
 
+pub use calibration::calibrated;
 pub use clutter::Clutter;
 pub use eyes::{Eyes, KnownScenery, ObjectPercept, Percept, PoseDeviation, Visibility};
 pub use known::{KnownObject, YawSymmetry};

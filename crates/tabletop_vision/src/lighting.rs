@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 use tabletop_camera::{Camera, Rasterizer, Scene};
 use tabletop_core::{Light, Picture};
 
-use crate::{normal::NormalEquations, residual::square_of};
+use crate::{normal::LeastSquares, residual::square_of};
 
 /// The squared difference of a pixel at which it counts half as much as an outlier.
 const OUTLIER: f32 = 3_000.0;
@@ -102,7 +102,7 @@ impl Estimate {
         sides: &[Picture; SIDES],
         usual: &[f32; SIDES],
     ) {
-        let mut equations = NormalEquations::<SIDES>::default();
+        let mut equations = LeastSquares::<SIDES>::default();
         let mut colors = [[0.0_f64; 2]; 3];
         for (i, seen) in seen.rgb.chunks_exact(3).enumerate() {
             let parts =

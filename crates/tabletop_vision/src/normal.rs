@@ -1,13 +1,13 @@
-//! Normal equations of small least-squares problems.
+//! Small least-squares problems, as normal equations.
 
-/// The normal equations `JᵀWJ δ = JᵀWr` of up to `N` parameters.
+/// A least-squares problem of weighted differences: the normal equations `JᵀWJ δ = JᵀWr` of up to `N` parameters.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct NormalEquations<const N: usize> {
+pub(crate) struct LeastSquares<const N: usize> {
     pub curvature: [[f64; N]; N],
     pub slope: [f64; N],
 }
 
-impl<const N: usize> Default for NormalEquations<N> {
+impl<const N: usize> Default for LeastSquares<N> {
     fn default() -> Self {
         Self {
             curvature: [[0.0; N]; N],
@@ -16,15 +16,15 @@ impl<const N: usize> Default for NormalEquations<N> {
     }
 }
 
-impl<const N: usize> NormalEquations<N> {
+impl<const N: usize> LeastSquares<N> {
     /// Adds a difference with its derivatives and weight.
     #[inline]
     pub fn add(&mut self, derivatives: &[f32; N], difference: f32, weight: f32) {
         for i in 0..N {
             let weighted = f64::from(derivatives[i] * weight);
             self.slope[i] += weighted * f64::from(difference);
-            for j in 0..=i {
-                self.curvature[i][j] += weighted * f64::from(derivatives[j]);
+            for (own, other) in self.curvature[i].iter_mut().zip(&derivatives[..=i]) {
+                *own += weighted * f64::from(*other);
             }
         }
     }
@@ -48,34 +48,23 @@ impl<const N: usize> NormalEquations<N> {
 
     /// Cholesky's decomposition, and both substitutions.
     fn solve(&self, right: &[f64; N], damping: f64) -> [f64; N] {
-        let mut factor = self.curvature;
-        for i in 0..N {
-            factor[i][i] = factor[i][i] * (1.0 + damping) + 1e-9;
-        }
-        for i in 0..N {
-            for j in 0..=i {
-                let mut sum = factor[i][j];
-                for k in 0..j {
-                    sum -= factor[i][k] * factor[j][k];
-                }
-                factor[i][j] = match i == j {
-                    true => sum.max(1e-12).sqrt(),
-                    false => sum / factor[j][j],
-                };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut factor = [[0.0; N]; N];
+        let mut solved = [0.0; N];
+        for (i, (row, right)) in self.curvature.iter().zip(right).enumerate() {
+            let mut own = [0.0; N];
+            for (j, other) in factor.iter().enumerate().take(i) {
+                own[j] = (row[j] - dot(&own[..j], &other[..j])) / other[j];
             }
-        }
-        let mut solved = *right;
-        for i in 0..N {
-            for k in 0..i {
-                solved[i] -= factor[i][k] * solved[k];
-            }
-            solved[i] /= factor[i][i];
+            let square = row[i] * (1.0 + damping) + 1e-9 - dot(&own[..i], &own[..i]);
+            own[i] = square.max(1e-12).sqrt();
+            solved[i] = (right - dot(&own[..i], &solved[..i])) / own[i];
+            factor[i] = own;
         }
         for i in (0..N).rev() {
-            for k in i + 1..N {
-                solved[i] -= factor[k][i] * solved[k];
-            }
-            solved[i] /= factor[i][i];
+            let column: [f64; N] = std::array::from_fn(|k| factor[k][i]);
+            let known = dot(&column[i + 1..], &solved[i + 1..]);
+            solved[i] = (solved[i] - known) / factor[i][i];
         }
         solved
     }
@@ -87,7 +76,7 @@ mod tests {
 
     #[test]
     fn a_line_is_fitted_and_an_outlier_weighs_little() {
-        let mut equations = NormalEquations::<2>::default();
+        let mut equations = LeastSquares::<2>::default();
         for x in 0..10 {
             let x = x as f32;
             equations.add(&[x, 1.0], 3.0 * x - 2.0, 1.0);

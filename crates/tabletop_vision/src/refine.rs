@@ -6,18 +6,18 @@ use tabletop_camera::{DrawnSolid, PictureWindow};
 use tabletop_core::Picture;
 
 use crate::{
-    known::{KnownObject, Placement, YawSymmetry},
-    normal::NormalEquations,
-    residual::{OUTLIER, Residual, TRIED, Trial, rows, square_of},
+    known::{KnownObject, StandingPose, YawSymmetry},
+    normal::LeastSquares,
+    residual::{OUTLIER, Residual, TRIED, TriedFit, rows, square_of},
 };
 
 /// The parameters: along X and Y, along the ray from the eye, and about the vertical.
 const PARAMETERS: usize = 4;
-pub(crate) type PoseEquations = NormalEquations<PARAMETERS>;
+pub(crate) type PoseEquations = LeastSquares<PARAMETERS>;
 
 /// A stage of a refinement.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stage {
+pub(crate) struct RefinementStage {
     /// Step of the derivatives, in units.
     step: f32,
     /// True if it goes to both sides.
@@ -31,14 +31,14 @@ pub(crate) struct Stage {
 const DAMPING: f64 = 1e-3;
 
 /// From a rough guess, some pixels off. A pixel is about 0.1 units.
-pub(crate) const COARSE: [Stage; 2] = [
-    Stage {
+pub(crate) const COARSE: [RefinementStage; 2] = [
+    RefinementStage {
         step: 0.2,
         is_central: false,
         outlier: 300_000.0,
         most: 5,
     },
-    Stage {
+    RefinementStage {
         step: 0.08,
         is_central: true,
         outlier: 60_000.0,
@@ -47,14 +47,14 @@ pub(crate) const COARSE: [Stage; 2] = [
 ];
 
 /// From a guess less than a pixel off.
-pub(crate) const FINE: [Stage; 2] = [
-    Stage {
+pub(crate) const FINE: [RefinementStage; 2] = [
+    RefinementStage {
         step: 0.06,
         is_central: true,
         outlier: 3.0 * OUTLIER,
         most: 4,
     },
-    Stage {
+    RefinementStage {
         step: 0.02,
         is_central: true,
         outlier: OUTLIER,
@@ -63,7 +63,7 @@ pub(crate) const FINE: [Stage; 2] = [
 ];
 
 /// From where the object was in the last picture.
-pub(crate) const TRACKING: [Stage; 4] = [COARSE[0], COARSE[1], FINE[0], FINE[1]];
+pub(crate) const TRACKING: [RefinementStage; 4] = [COARSE[0], COARSE[1], FINE[0], FINE[1]];
 
 /// An object that is moved over what is kept.
 pub(crate) struct Refinement<'a, 'p> {
@@ -75,20 +75,24 @@ pub(crate) struct Refinement<'a, 'p> {
 
 impl Refinement<'_, '_> {
     /// The solids of the object at a placement.
-    fn solids(&self, placement: &Placement) -> Vec<DrawnSolid> {
+    fn solids(&self, placement: &StandingPose) -> Vec<DrawnSolid> {
         let mut solids = Vec::new();
         self.object.draw(placement, TRIED, &mut solids);
         solids
     }
 
     /// Tries a placement.
-    pub fn try_at(&mut self, placement: &Placement, outlier: f32) -> Trial {
+    pub fn try_at(&mut self, placement: &StandingPose, outlier: f32) -> TriedFit {
         let solids = self.solids(placement);
         self.residual.try_solids(&solids, outlier)
     }
 
     /// The best placement near one.
-    pub fn refined(&mut self, mut placement: Placement, stages: &[Stage]) -> (Placement, Trial) {
+    pub fn refined(
+        &mut self,
+        mut placement: StandingPose,
+        stages: &[RefinementStage],
+    ) -> (StandingPose, TriedFit) {
         for stage in stages {
             let mut best = self.try_at(&placement, stage.outlier).gain;
             for _ in 0..stage.most {
@@ -131,8 +135,29 @@ impl Refinement<'_, '_> {
         (placement, trial)
     }
 
+    /// The best of the placements that are refined from near one: out of a local minimum.
+    pub fn shaken(&mut self, placement: StandingPose) -> (StandingPose, TriedFit) {
+        /// The displacement, in units.
+        const SHAKEN: f32 = 0.08;
+        let mut best = (placement, self.try_at(&placement, OUTLIER));
+        for parameter in self.parameters(&placement) {
+            for side in [-SHAKEN, SHAKEN] {
+                let start = self.moved(&placement, parameter, side);
+                let refined = self.refined(start, &FINE);
+                if refined.1.gain < best.1.gain {
+                    best = refined;
+                }
+            }
+        }
+        best
+    }
+
     /// Steps along axes and about the vertical, smaller and smaller, as long as they reduce the loss: what derivatives over finite steps leave.
-    pub fn polished(&mut self, mut placement: Placement, largest: f32) -> (Placement, Trial) {
+    pub fn polished(
+        &mut self,
+        mut placement: StandingPose,
+        largest: f32,
+    ) -> (StandingPose, TriedFit) {
         /// The smallest step, in units.
         const LEAST: f32 = 0.000_4;
         let mut best = self.try_at(&placement, OUTLIER);
@@ -161,7 +186,7 @@ impl Refinement<'_, '_> {
     /// The normal equations at a placement, with derivatives over a step to both sides, or to one only.
     pub fn equations(
         &mut self,
-        placement: &Placement,
+        placement: &StandingPose,
         step: f32,
         is_central: bool,
         outlier: f32,
@@ -215,7 +240,7 @@ impl Refinement<'_, '_> {
     }
 
     /// The parameters that are estimated.
-    fn parameters(&self, placement: &Placement) -> impl Iterator<Item = usize> + use<> {
+    fn parameters(&self, placement: &StandingPose) -> impl Iterator<Item = usize> + use<> {
         let is_free = self.is_free;
         let is_round = self.object.stance(placement).symmetry == YawSymmetry::Any;
         (0..PARAMETERS).filter(move |&parameter| match parameter {
@@ -226,17 +251,17 @@ impl Refinement<'_, '_> {
     }
 
     /// The placement after a change of one parameter that moves the object by about this length.
-    fn moved(&self, placement: &Placement, parameter: usize, by: f32) -> Placement {
+    fn moved(&self, placement: &StandingPose, parameter: usize, by: f32) -> StandingPose {
         let mut change = [0.0; PARAMETERS];
         change[parameter] = by;
         self.changed(placement, &change)
     }
 
     /// The placement after a change of all parameters, as lengths.
-    fn changed(&self, placement: &Placement, by: &[f32; PARAMETERS]) -> Placement {
+    fn changed(&self, placement: &StandingPose, by: &[f32; PARAMETERS]) -> StandingPose {
         let ray = (placement.location - self.residual.eye()).normalize_or(Vec3::NEG_Z);
         let radius = self.object.stance(placement).radius;
-        Placement {
+        StandingPose {
             location: placement.location + Vec3::new(by[0], by[1], 0.0) + ray * by[2] * ALONG_RAY,
             yaw: placement.yaw + by[3] / radius,
             ..*placement
@@ -244,7 +269,12 @@ impl Refinement<'_, '_> {
     }
 
     /// The placement after a step of all parameters, none longer than a few of the derivatives' steps.
-    fn stepped(&self, placement: &Placement, step: &[f64; PARAMETERS], size: f32) -> Placement {
+    fn stepped(
+        &self,
+        placement: &StandingPose,
+        step: &[f64; PARAMETERS],
+        size: f32,
+    ) -> StandingPose {
         let most = 3.0 * size;
         self.changed(placement, &step.map(|by| (by as f32).clamp(-most, most)))
     }

@@ -31,7 +31,7 @@ pub(crate) struct Residual<'p> {
 
 /// What becomes of the residual where an object is drawn.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Trial {
+pub(crate) struct TriedFit {
     /// The loss in its window, less that without it.
     pub gain: f32,
     /// Number of pixels that show it.
@@ -96,8 +96,8 @@ impl<'p> Residual<'p> {
     }
 
     /// Tries solids, whose number is [`TRIED`].
-    pub fn try_solids(&mut self, solids: &[DrawnSolid], outlier: f32) -> Trial {
-        let mut trial = Trial::default();
+    pub fn try_solids(&mut self, solids: &[DrawnSolid], outlier: f32) -> TriedFit {
+        let mut trial = TriedFit::default();
         let Some(window) = self.layers.window_of(solids) else {
             return trial;
         };

@@ -1,6 +1,6 @@
 //! Supports: the heights at which an object may stand.
 
-use crate::known::{KnownObject, Placement, StandingSolid};
+use crate::known::{KnownObject, StandingPose, StandingSolid};
 
 /// Largest gap, seen from above and in units, between solids that may stand on each other: estimates are not exact.
 const BESIDE: f32 = 0.06;
@@ -10,8 +10,8 @@ const SAME_HEIGHT: f32 = 1e-3;
 /// The heights of an object's origin at which it would stand on the table or on one of the others, at this place, from the lowest on.
 pub(crate) fn heights<'o>(
     object: &KnownObject,
-    placement: &Placement,
-    others: impl IntoIterator<Item = (&'o KnownObject, &'o Placement)>,
+    placement: &StandingPose,
+    others: impl IntoIterator<Item = (&'o KnownObject, &'o StandingPose)>,
 ) -> Vec<f32> {
     let stance = object.stance(placement);
     let mut heights = vec![-stance.low];
@@ -84,7 +84,7 @@ pub(crate) fn pile_heights<'o>(
 /// True if an object at a placement shares no more room with solids than estimates that are not exact may.
 pub(crate) fn has_room(
     object: &KnownObject,
-    placement: &Placement,
+    placement: &StandingPose,
     others: &[StandingSolid],
 ) -> bool {
     /// How deep solids may be in each other, in units.

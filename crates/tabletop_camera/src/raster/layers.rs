@@ -161,7 +161,7 @@ impl PictureLayers {
         self.kept_extent = self.visible.extent();
         let window = &self.window;
         self.kept.copy(&self.ground, window, self.is_smooth);
-        let drawing = Drawing {
+        let drawing = LayerDrawing {
             view: &self.view,
             visible: &self.visible,
             after: self.ground_extent,
@@ -180,7 +180,7 @@ impl PictureLayers {
         self.visible.truncate(self.kept_extent);
         self.add(solids);
         self.tried.copy(&self.kept, &window, self.is_smooth);
-        let drawing = Drawing {
+        let drawing = LayerDrawing {
             view: &self.view,
             visible: &self.visible,
             after: self.kept_extent,
@@ -220,7 +220,7 @@ impl PictureLayers {
 }
 
 /// The surfaces of a layer that are drawn into it.
-struct Drawing<'a> {
+struct LayerDrawing<'a> {
     view: &'a PinholeView,
     visible: &'a VisibleSurfaces,
     /// How much there was of everything in the layers below.
@@ -228,7 +228,7 @@ struct Drawing<'a> {
     is_smooth: bool,
 }
 
-impl Drawing<'_> {
+impl LayerDrawing<'_> {
     /// Draws into the samples of a window, and perhaps into some beside it.
     fn draw(&self, window: &PictureWindow, layer: &mut RasterLayer, single: &mut CenterSamples) {
         self.draw_faces(window, layer);

@@ -5,7 +5,10 @@ mod scenes;
 
 use bevy::math::Vec3;
 use scenes::{Difficulty, TASKS};
-use tabletop_vision::{Eyes, KnownScenery};
+use tabletop_camera::Camera;
+use tabletop_core::Random;
+use tabletop_geometry::{Pose, turn_about};
+use tabletop_vision::{Eyes, KnownScenery, calibrated};
 
 #[test]
 fn objects_of_every_task_are_seen_to_a_fiftieth_of_a_unit() {
@@ -21,10 +24,16 @@ fn objects_of_every_task_are_seen_to_a_fiftieth_of_a_unit() {
                 );
                 let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
                 let seen = eyes.look(&sample.picture, &KnownScenery::default());
-                for error in sample.errors(&seen) {
+                if task.name == "wall" && is_end && seed == 0 {
+                    for o in &seen.objects {
+                        eprintln!("PP {o:?}");
+                    }
+                    eprintln!("{:?}", sample.poses);
+                }
+                for (object, error) in sample.errors(&seen).into_iter().enumerate() {
                     assert!(
                         error.length < 0.02 && error.degrees < 1.0 && error.is_sure,
-                        "{} {is_end} {seed}: {error:?}",
+                        "{} {is_end} {seed}, object {object}: {error:?}",
                         task.name
                     );
                 }
@@ -52,14 +61,43 @@ fn an_object_that_is_carried_is_followed_and_its_height_is_seen() {
         let seen = eyes.look(&sample.with_poses(&poses), &KnownScenery::default());
         let pose = seen.objects[0].pose.unwrap();
         largest = largest.max(pose.location.distance(poses[0].location));
-        for i in 1..3 {
-            let error = seen.objects[i]
-                .pose
-                .unwrap()
-                .location
-                .distance(poses[i].location);
-            assert!(error < 0.02, "frame {frame}, object {i}: {error}");
+        for (own, truth) in seen.objects.iter().zip(&poses).skip(1) {
+            let error = own.pose.unwrap().location.distance(truth.location);
+            assert!(error < 0.02, "frame {frame}: {error}");
         }
     }
     assert!(largest < 0.1, "{largest}");
+}
+
+#[test]
+fn a_camera_that_was_moved_is_found_by_the_edges_of_the_table() {
+    for seed in 0..5 {
+        let mut sample = TASKS[0].sample(&Difficulty::default(), seed);
+        let thought = sample.camera;
+        let mut random = Random::new(seed);
+        let mut any = |most: f32| random.between((-most, most));
+        let by = Vec3::new(any(0.4), any(0.4), any(0.4));
+        let axis = Vec3::new(any(1.0), any(1.0), any(1.0)).normalize();
+        sample.camera.pose = thought.pose * Pose::new(by, turn_about(axis, any(0.03)));
+        let truth = sample.camera;
+        let found = calibrated(&sample.with_poses(&sample.poses), &thought, &sample.table);
+        let shift = |camera: &Camera, point: Vec3| {
+            let [seen, expected] = [&truth, camera].map(|it| it.pixel_of(point).unwrap());
+            seen.distance(expected)
+        };
+        let points =
+            (-5..=5).flat_map(|x| (-5..1).map(move |y| Vec3::new(x as f32, y as f32, 0.5)));
+        let largest = |camera| {
+            let shifts = points.clone().map(|point| shift(camera, point));
+            shifts.fold(0.0, f32::max)
+        };
+        assert!(largest(&thought) > 4.0);
+        assert!(
+            largest(&found) < 1.0,
+            "seed {seed}: {} pixels",
+            largest(&found)
+        );
+        let off = found.pose.location.distance(truth.pose.location);
+        assert!(off < 0.15, "seed {seed}: {off} units");
+    }
 }

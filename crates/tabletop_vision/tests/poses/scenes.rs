@@ -306,7 +306,7 @@ impl TaskScene {
                 });
                 if is_free {
                     objects.push(ObjectSpec::new(
-                        &format!("Distractor{number}"),
+                        format!("Distractor{number}"),
                         Pose::new(at.extend(z / 2.0), rotation),
                         1.0,
                         shape,
@@ -349,12 +349,10 @@ pub struct PoseError {
     pub length: f32,
     pub degrees: f32,
     pub is_sure: bool,
-    pub object: usize,
 }
 
 impl Sample {
     /// A picture of the known objects elsewhere.
-    #[allow(dead_code, reason = "the bench has no use for it")]
     pub fn with_poses(&self, poses: &[Pose]) -> Picture {
         let mut scene = Scene {
             solids: vec![DrawnSolid::of_table(&self.table, 1)],
@@ -383,7 +381,6 @@ impl Sample {
                     length: f32::INFINITY,
                     degrees: 180.0,
                     is_sure: own.is_sure,
-                    object: i,
                 });
                 continue;
             };
@@ -412,7 +409,6 @@ impl Sample {
                 length: pose.location.distance(self.poses[j].location),
                 degrees: yaw.to_degrees().abs(),
                 is_sure: own.is_sure,
-                object: i,
             });
         }
         errors
