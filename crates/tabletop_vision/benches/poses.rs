@@ -17,7 +17,7 @@ use tabletop_vision::{Eyes, KnownScenery};
 /// Number of pictures in which an object is followed.
 const FRAMES: u32 = 40;
 /// Number of looks at each picture.
-const REPEATED: usize = 3;
+const REPEATED: usize = 2;
 
 const EASY: Difficulty = Difficulty {
     is_end: false,

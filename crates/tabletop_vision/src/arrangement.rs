@@ -79,20 +79,8 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             residual,
         };
         arrangement.compare(&arrangement.residual.whole());
-        arrangement.noise = arrangement.median_variance();
+        arrangement.noise = arrangement.residual.variance();
         arrangement
-    }
-
-    /// The variance of a part of a pixel, from the median of all: most pixels show what is known.
-    fn median_variance(&self) -> f32 {
-        let mut squares = self.squares.clone();
-        if squares.is_empty() {
-            return 0.0;
-        }
-        let middle = squares.len() / 2;
-        let (_, median, _) = squares.select_nth_unstable_by(middle, f32::total_cmp);
-        // The median of the chi-squared distribution of three degrees of freedom.
-        *median / 2.366
     }
 
     /// Squared difference of a pixel above which it is not explained.

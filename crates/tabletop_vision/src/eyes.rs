@@ -1,7 +1,7 @@
 //! Eyes: pictures in, poses of known objects out, one picture after the other.
 
 use bevy::math::Vec3;
-use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Scene};
+use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, PictureLayers, Scene};
 use tabletop_core::{Light, Picture, Table};
 use tabletop_geometry::Pose;
 
@@ -23,6 +23,8 @@ pub struct Eyes {
     table: Table,
     poses: Vec<Option<Pose>>,
     is_light_unknown: bool,
+    /// The memory of the last picture's layers.
+    layers: Option<PictureLayers>,
 }
 
 /// What is in a picture besides the table and the objects, and known: it is drawn, and not estimated.
@@ -101,6 +103,7 @@ impl Eyes {
             camera,
             table,
             is_light_unknown: false,
+            layers: None,
         }
     }
 
@@ -146,7 +149,14 @@ impl Eyes {
         if self.is_light_unknown && before.iter().all(Option::is_none) {
             self.camera.light = estimated(picture, &ground, &self.camera, &Light::default());
         }
-        let residual = Residual::new(picture, &ground, self.camera);
+        let layers = match self.layers.take() {
+            Some(mut layers) => {
+                layers.begin(&ground, &self.camera);
+                layers
+            }
+            None => PictureLayers::of(&ground, &self.camera),
+        };
+        let residual = Residual::new(picture, layers, self.camera);
         let mut arrangement = ObjectArrangement::empty(&self.objects, residual);
         arrangement.begin(&before);
         if self.is_light_unknown {
@@ -156,7 +166,9 @@ impl Eyes {
                 let light = estimated(picture, &scene, &self.camera, &Light::default());
                 self.camera.light = light;
                 let placements = arrangement.placements.clone();
-                let residual = Residual::new(picture, &ground, self.camera);
+                let mut layers = arrangement.residual.into_layers();
+                layers.begin(&ground, &self.camera);
+                let residual = Residual::new(picture, layers, self.camera);
                 arrangement = ObjectArrangement::empty(&self.objects, residual);
                 arrangement.begin_again(&placements);
             }
@@ -174,6 +186,7 @@ impl Eyes {
             arrangement.square(i) > least
         });
         let noise = arrangement.noise.sqrt();
+        self.layers = Some(arrangement.residual.into_layers());
         for (own, seen) in self.poses.iter_mut().zip(&objects) {
             *own = seen.pose;
         }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use bevy::math::Vec3;
-use tabletop_camera::{Camera, DrawnSolid, PictureLayers, PictureWindow, Scene};
+use tabletop_camera::{Camera, DrawnSolid, PictureLayers, PictureWindow};
 use tabletop_core::Picture;
 
 /// The squared difference of a pixel, in squared grey levels summed over the colours, at which it counts half as much as an outlier: far above
@@ -41,14 +41,20 @@ pub(crate) struct TriedFit {
 }
 
 impl<'p> Residual<'p> {
-    pub fn new(seen: &'p Picture, ground: &Scene, camera: Camera) -> Self {
+    /// With the ground and the camera with which the layers were begun.
+    pub fn new(seen: &'p Picture, layers: PictureLayers, camera: Camera) -> Self {
         Self {
             seen,
             camera,
-            layers: PictureLayers::of(ground, &camera),
+            layers,
             kept: vec![0.0; seen.depth.len()],
             window: PictureWindow::default(),
         }
+    }
+
+    /// The layers, for the next picture.
+    pub fn into_layers(self) -> PictureLayers {
+        self.layers
     }
 
     pub const fn seen(&self) -> &'p Picture {
@@ -93,6 +99,35 @@ impl<'p> Residual<'p> {
     /// The squared differences of pixels from what is kept, valid in its window.
     pub fn squares(&self) -> &[f32] {
         &self.kept
+    }
+
+    /// The variance of noise in a part of a pixel of what is kept, from the median of all differences: most pixels show what is known. White and
+    /// black cannot get brighter and darker, so what does not differ does not count.
+    pub fn variance(&mut self) -> f32 {
+        /// The part of all that differs at least if there is noise.
+        const NOISY: f32 = 0.3;
+        let window = self.window.clone();
+        let drawn = self.layers.draw(&[], &window);
+        let mut counts = [0_u32; 256];
+        for row in rows(&window, self.seen.width) {
+            let parts = 3 * row.start..3 * row.end;
+            for (seen, drawn) in self.seen.rgb[parts.clone()].iter().zip(&drawn.rgb[parts]) {
+                counts[usize::from(seen.abs_diff(*drawn))] += 1;
+            }
+        }
+        let all: u32 = counts.iter().sum();
+        let differing = all - counts[0];
+        if differing as f32 <= NOISY * all as f32 {
+            return 0.0;
+        }
+        let mut below = 0;
+        let median = counts.iter().skip(1).take_while(|count| {
+            below += **count;
+            below <= differing / 2
+        });
+        let median = median.count() as f32 + 1.0;
+        // Half of all normally distributed numbers are within 0.6745 standard deviations.
+        (median / 0.6745) * (median / 0.6745)
     }
 
     /// Tries solids, whose number is [`TRIED`].

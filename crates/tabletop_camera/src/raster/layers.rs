@@ -82,32 +82,42 @@ struct RasterLayer {
 impl PictureLayers {
     /// The view of a camera with this scene as its ground, without the scene's [markers](Scene::markers).
     pub fn of(ground: &Scene, camera: &Camera) -> Self {
-        let view = PinholeView::of(camera);
-        let mut visible = VisibleSurfaces::default();
-        visible.lighting = camera.light.into();
-        let mut polyhedra = Polyhedra::default();
-        polyhedra.find(&ground.solids);
-        visible.project(ground, polyhedra.figures(), &view);
-        let mut picture = Picture::default();
-        picture.resize(camera.width, camera.height);
-        let extent = visible.extent();
         let mut layers = Self {
-            view,
+            view: PinholeView::of(camera),
             is_smooth: camera.antialiasing,
-            ground: RasterLayer::of_size(&view),
-            kept: RasterLayer::of_size(&view),
-            tried: RasterLayer::of_size(&view),
-            visible,
+            visible: VisibleSurfaces::default(),
             polyhedra: Polyhedra::default(),
-            ground_extent: extent,
-            kept_extent: extent,
+            ground: RasterLayer::default(),
+            kept: RasterLayer::default(),
+            tried: RasterLayer::default(),
+            ground_extent: SurfaceExtent::default(),
+            kept_extent: SurfaceExtent::default(),
             window: PictureWindow::default(),
-            picture,
+            picture: Picture::default(),
             backdrop: Backdrop::default(),
             single: CenterSamples::default(),
         };
-        layers.sample_ground();
+        layers.begin(ground, camera);
         layers
+    }
+
+    /// Begins anew with another ground or camera, in the same memory.
+    pub fn begin(&mut self, ground: &Scene, camera: &Camera) {
+        self.view = PinholeView::of(camera);
+        self.is_smooth = camera.antialiasing;
+        self.visible = VisibleSurfaces::default();
+        self.visible.lighting = camera.light.into();
+        let mut polyhedra = Polyhedra::default();
+        polyhedra.find(&ground.solids);
+        (self.visible).project(ground, polyhedra.figures(), &self.view);
+        self.ground_extent = self.visible.extent();
+        self.kept_extent = self.ground_extent;
+        self.window = PictureWindow::default();
+        self.picture.resize(camera.width, camera.height);
+        for layer in [&mut self.ground, &mut self.kept, &mut self.tried] {
+            layer.resize(&self.view);
+        }
+        self.sample_ground();
     }
 
     fn sample_ground(&mut self) {
@@ -280,12 +290,10 @@ impl LayerDrawing<'_> {
 }
 
 impl RasterLayer {
-    fn of_size(view: &PinholeView) -> Self {
-        let mut layer = Self::default();
+    fn resize(&mut self, view: &PinholeView) {
         let (width, height) = (view.width as usize, view.height as usize);
-        layer.centers.resize(width, height);
-        layer.smooth.resize(width, height);
-        layer
+        self.centers.resize(width, height);
+        self.smooth.resize(width, height);
     }
 
     /// Copies a window of another layer.
@@ -356,7 +364,9 @@ mod tests {
                 ..Scene::default()
             };
             scene.solids.extend(ground);
-            let mut layers = PictureLayers::of(&scene, &camera);
+            let other = Scene { solids: before.clone(), ..Scene::default() };
+            let mut layers = PictureLayers::of(&other, &Camera { width: 90, ..camera });
+            layers.begin(&scene, &camera);
             // Others were tried and kept before.
             layers.keep(&before, &layers.whole());
             layers.draw(&tried, &layers.whole());

@@ -354,6 +354,11 @@ pub struct PoseError {
 impl Sample {
     /// A picture of the known objects elsewhere.
     pub fn with_poses(&self, poses: &[Pose]) -> Picture {
+        self.with_poses_and(poses, &[])
+    }
+
+    /// A picture of the known objects elsewhere, and of more.
+    pub fn with_poses_and(&self, poses: &[Pose], more: &[DrawnSolid]) -> Picture {
         let mut scene = Scene {
             solids: vec![DrawnSolid::of_table(&self.table, 1)],
             ..Scene::default()
@@ -366,6 +371,7 @@ impl Sample {
                     .map(|solid| DrawnSolid::of(*pose, solid, number)),
             );
         }
+        scene.solids.extend_from_slice(more);
         let mut picture = Picture::default();
         Rasterizer::alone().draw(&scene, &self.camera, &mut picture);
         picture
