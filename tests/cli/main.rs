@@ -34,5 +34,6 @@ mod task_files;
 mod usage;
 mod validate;
 mod video;
+mod watch;
 #[cfg(feature = "window")]
 mod window;

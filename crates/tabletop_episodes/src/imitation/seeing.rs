@@ -121,7 +121,7 @@ impl<'a> SeeingStage<'a> {
             names: BTreeMap::new(),
         };
         stage.glance(None);
-        stage.names = stage.name_look_alikes();
+        stage.names = stage.named_by_place();
         stage
     }
 
@@ -149,7 +149,7 @@ impl<'a> SeeingStage<'a> {
     }
 
     /// Names objects that look the same as the nearest ones that the robot has seen.
-    fn name_look_alikes(&self) -> BTreeMap<String, String> {
+    fn named_by_place(&self) -> BTreeMap<String, String> {
         let truth = &self.observer.sight().objects;
         let mut names = BTreeMap::new();
         let mut free: Vec<_> = self.known.iter().collect();

@@ -1,0 +1,94 @@
+//! `tabletop watch` and `tabletop imitate --eyes`: tasks and objects, seen in pictures.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::{place, record_shipped, stderr, stdout, tabletop};
+
+fn recorded(scenario: &str) -> String {
+    record_shipped(scenario, &format!("watch_{scenario}"))
+}
+
+/// Output of `watch`, without the errors of the poses.
+fn seen(arguments: &[&str]) -> String {
+    let output = tabletop(&[&["watch"], arguments].concat());
+    assert_eq!(stderr(&output), "");
+    let said = stdout(&output);
+    let lines = said.lines().filter(|line| !line.contains(" pictures; "));
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn pictures_show_the_same_tasks_as_recordings() {
+    for scenario in ["stack_three", "swap", "wall", "letter_u", "hanoi"] {
+        let demo = recorded(scenario);
+        assert_eq!(seen(&[&demo]), stdout(&tabletop(&["explain", &demo])));
+    }
+}
+
+#[test]
+fn poses_are_seen_to_a_millimetre_on_average() {
+    let demo = recorded("stack_three");
+    let said = stdout(&tabletop(&["watch", &demo, "--json"]));
+    let json: Value = serde_json::from_str(&said).unwrap();
+    let errors = json["errors"].as_array().unwrap().iter();
+    let mut errors: Vec<_> = errors.map(|error| error.as_f64().unwrap()).collect();
+    errors.sort_by(f64::total_cmp);
+    assert!(errors[errors.len() / 2] < 0.01, "{errors:?}");
+    assert!(errors[errors.len() - 1] < 0.1, "{errors:?}");
+}
+
+#[test]
+fn a_folder_of_pictures_is_watched_with_a_task_file() {
+    let demo = recorded("stack_three");
+    let pictures = place("watch_pictures");
+    fs::create_dir_all(&pictures).unwrap();
+    let mut number = 0;
+    for segment in 0..5 {
+        let folder = format!("{demo}/{segment}");
+        let mut frames: Vec<_> = fs::read_dir(folder).unwrap().map(Result::unwrap).collect();
+        frames.sort_by_key(|frame| {
+            let path = frame.path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            name.parse::<u32>().unwrap()
+        });
+        for frame in frames {
+            fs::copy(frame.path(), pictures.join(format!("{number:05}.png"))).unwrap();
+            number += 1;
+        }
+    }
+    let pictures = pictures.to_str().unwrap();
+    let refused = tabletop(&["watch", pictures]);
+    assert!(
+        stderr(&refused).contains("--setup FILE"),
+        "{}",
+        stderr(&refused)
+    );
+    let said = seen(&[pictures, "--setup", "tablesetup/blocks.xml"]);
+    assert_eq!(said, stdout(&tabletop(&["explain", &demo])));
+}
+
+#[test]
+fn what_cannot_be_watched_is_said() {
+    let empty = place("watch_empty");
+    fs::create_dir_all(&empty).unwrap();
+    for folder in [empty.to_str().unwrap(), "no/such/folder"] {
+        let output = tabletop(&["watch", folder]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains(folder), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn the_robot_does_what_it_sees() {
+    let demo = recorded("stack_three");
+    let arguments = ["imitate", &demo, "--eyes", "--watch", "--trials", "3"];
+    let output = tabletop(&arguments);
+    assert!(
+        stdout(&output).contains("done              3 of 3"),
+        "{}",
+        stdout(&output)
+    );
+    assert!(!tabletop(&["imitate", &demo, "--watch"]).status.success());
+}
