@@ -75,8 +75,13 @@ impl Camera {
     /// The pixel of a point, as column and row; the centre of the upper left pixel is (0, 0). `None` for points that are
     /// not in front of the camera; others may lie outside the picture.
     pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
+        self.projection()(point)
+    }
+
+    /// [`pixel_of`](Self::pixel_of), for many points.
+    pub fn projection(&self) -> impl Fn(Vec3) -> Option<Vec2> + use<> {
         let view = PinholeView::of(self);
-        view.pixel_of(point - view.eye)
+        move |point| view.pixel_of(point - view.eye)
     }
 }
 
