@@ -277,7 +277,6 @@ pub fn integration_parameters() -> IntegrationParameters {
         // Squeezed bodies come apart gently.
         normalized_max_corrective_velocity: 3.0,
         normalized_prediction_distance: effort::PREDICTION,
-        contact_clustering: false,
         normalized_max_linear_velocity: 4000.0,
         // Kept contacts lag behind what rocks, and feed it: with 0.001, a ring on a peg never comes to rest. Without any, towers creep.
         normalized_contact_recycle_distance: 0.0008,

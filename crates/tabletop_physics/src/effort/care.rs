@@ -111,6 +111,8 @@ impl Care {
             sweeps,
             prediction,
             recycles: !is_handling && !self.is_landing(),
+            // Among contacts predicted far ahead, a cluster may lack the corner that touches.
+            clusters: is_handling && prediction <= PREDICTION,
             is_continuous: fastest_point.is_some_and(|it| is_handling || it > SPEED_OF_CCD),
         }
     }

@@ -11,6 +11,9 @@ use super::{engine::Engine, substeps::speed};
 /// Speed, in units/s and rad/s together, below which a landing body does not slide.
 const LANDING_SPEED: f32 = 1.0;
 
+/// Distance from the way of a body, in units, within which something may be hit.
+const MARGIN: f32 = 0.02;
+
 /// Cosine of the angle, some 2.5°, within which faces are parallel.
 const PARALLEL: f32 = 0.999;
 
@@ -28,7 +31,7 @@ pub(crate) fn landing_speed(engine: &Engine, handle: RigidBodyHandle) -> f32 {
     );
     let dt = engine.parameters.dt;
     let next = body.predict_position_using_velocity_and_forces(dt);
-    let margin = engine.gravity * dt * dt;
+    let margin = engine.gravity * dt * dt + MARGIN;
     let lands = body.colliders().iter().any(|shape| {
         let way = engine.colliders[*shape].compute_swept_aabb(&next);
         near.intersect_aabb_conservative(way.loosened(margin))

@@ -43,6 +43,8 @@ pub(super) struct Mode {
     pub prediction: f32,
     /// True if contacts of bodies that have hardly moved are kept.
     pub recycles: bool,
+    /// True if contacts of several parts with the same normal are merged.
+    pub clusters: bool,
     /// True if collision detection is continuous.
     pub is_continuous: bool,
 }
@@ -53,6 +55,7 @@ impl Mode {
         sweeps: SWEEPS,
         prediction: PREDICTION,
         recycles: false,
+        clusters: false,
         is_continuous: true,
     };
 
@@ -61,6 +64,7 @@ impl Mode {
         parameters.num_internal_stabilization_iterations = self.sweeps.plain;
         parameters.normalized_prediction_distance = self.prediction;
         parameters.contact_recycling = self.recycles;
+        parameters.contact_clustering = self.clusters;
         parameters.max_ccd_substeps = usize::from(self.is_continuous);
     }
 }

@@ -13,9 +13,8 @@ const LEAST_SUBSTEPS: usize = 4;
 /// Number of sub-steps of handled, free, fast and unevenly loaded bodies.
 pub(crate) const MOST_SUBSTEPS: usize = 20;
 
-/// Number of sub-steps of bodies at the foot of the highest low stacks, and of bodies deeper in a stack.
-const SUBSTEPS_OF_FOOT: usize = 6;
-const SUBSTEPS_OF_DEEP: usize = 12;
+/// Number of sub-steps by the greatest depth of a body in its stack, from 1 on; the last one holds for all greater depths.
+const SUBSTEPS_BY_DEPTH: [usize; 16] = [4, 4, 4, 4, 6, 11, 12, 12, 13, 13, 13, 13, 14, 14, 14, 16];
 
 /// Speed, in units/s and rad/s together, from which a body is fast.
 const FAST: f32 = 20.0;
@@ -61,9 +60,7 @@ impl SubstepFactors {
             return MOST_SUBSTEPS;
         }
         match self.depth {
-            Some(..LOW) => LEAST_SUBSTEPS,
-            Some(LOW) => SUBSTEPS_OF_FOOT,
-            Some(_) => SUBSTEPS_OF_DEEP,
+            Some(depth) => SUBSTEPS_BY_DEPTH[(depth as usize - 1).min(SUBSTEPS_BY_DEPTH.len() - 1)],
             None if self.is_jointed => LEAST_SUBSTEPS,
             None => MOST_SUBSTEPS,
         }
@@ -118,7 +115,7 @@ mod tests {
             let depth = Some(depth);
             SubstepFactors { depth, ..BLOCK }.substeps()
         };
-        assert_eq!([1, 5, 6, 16, 1000].map(substeps), [4, 6, 12, 12, 12]);
+        assert_eq!([1, 5, 6, 16, 1000].map(substeps), [4, 6, 11, 16, 16]);
         assert!((1..40).all(|depth| substeps(depth) <= substeps(depth + 1)));
     }
 
