@@ -20,7 +20,7 @@ pub use care::Care;
 pub use engine::Engine;
 pub(crate) use engine::REACH;
 pub(crate) use mode::PREDICTION;
-pub(crate) use substeps::{BASE_SUBSTEPS, MOST_SUBSTEPS, speed, substeps};
+pub(crate) use substeps::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE, speed, substeps};
 pub(crate) use touches::bodies_of;
 
 use crate::{

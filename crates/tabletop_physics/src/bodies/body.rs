@@ -7,7 +7,7 @@ use tabletop_geometry::{Bounds, Polyhedron, Pose, Primitive, Solid, Twist};
 
 use super::mass::mass_properties;
 use crate::{
-    effort::{BASE_SUBSTEPS, MOST_SUBSTEPS},
+    effort::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE},
     impact::Elasticity,
     settings::PhysicsSettings,
     workarounds::polytope::Polytope,
@@ -51,7 +51,7 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
         RigidBody::Dynamic,
         ColliderMassProperties::MassProperties(mass_properties(&spec.shape, spec.mass)),
         Ccd::enabled(),
-        AdditionalSolverIterations(MOST_SUBSTEPS - BASE_SUBSTEPS),
+        AdditionalSolverIterations(SUBSTEPS_OF_FREE - BASE_SUBSTEPS),
         Damping {
             linear_damping: 0.0,
             angular_damping: angular_damping(&spec.shape, &settings),

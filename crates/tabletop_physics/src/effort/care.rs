@@ -1,21 +1,39 @@
 //! The choice of solver settings, and the ticks for which earlier states count too.
 
 use bevy::prelude::*;
-use bevy_rapier3d::rapier::prelude::RigidBodyHandle;
+use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
 
 use super::{
     engine::Engine,
     landing::landing_speed,
-    mode::{FARTHEST_PREDICTION, LANDING_SWEEPS, LOW_STACK_SWEEPS, Mode, PREDICTION, SWEEPS},
+    mode::{
+        FARTHEST_PREDICTION, HANDLING_SWEEPS, LANDING_SWEEPS, LOW_STACK_SWEEPS, Mode, PREDICTION,
+        SWEEPS,
+    },
     substeps::{BASE_SUBSTEPS, MOST_SUBSTEPS, SubstepFactors, substeps, substeps_of_unmoved},
     touches::Touches,
 };
+
+/// Longest contact prediction, in units, for a body that approaches a hand or a link.
+const WAY_TO_HANDS: f32 = 3.0;
+
+/// Speed, in units/s, from which contacts with a hand or a link are predicted.
+const SPEED_TO_HANDS: f32 = 1.0;
+
+/// The same speed for a body that is near other bodies, too: Rapier would forget its contact with the body that it is leaving.
+const SPEED_TO_HANDS_BESIDE_OTHERS: f32 = 12.0;
+
+/// Angular speed, in rad/s, from which no contacts are predicted: Rapier would not predict where its edges go.
+const MOST_TURNING: f32 = 1.0;
 
 /// Speed, in units/s, from which collision detection is continuous.
 const SPEED_OF_CCD: f32 = 6.0;
 
 /// Largest decrease of an island's sub-steps from one tick to the next.
 const DECAY: usize = 2;
+
+/// Number of ticks for which everything has the most sub-steps after a hand or a robot was near something.
+const HANDLING_TICKS: u32 = 30;
 
 /// Number of ticks for which the solver has the sweeps of a landing. Continuous collision detection stops a fast body a little above the surface
 /// that it lands on, and the body falls the rest of the way in the next ticks.
@@ -29,6 +47,7 @@ const CALM_TICKS: u32 = 30;
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub struct Care {
+    handling: u32,
     landing: u32,
     /// The ticks without either, up to [`CALM_TICKS`].
     calm: u32,
@@ -53,8 +72,7 @@ impl Care {
             }
             awake.push((handle, factors));
         }
-        let is_handling = touches.is_handling;
-        self.pass_tick(is_handling, motion.landing > 0.0);
+        self.pass_tick(touches.is_handling, motion.landing > 0.0);
         let mut moving = awake.iter().filter_map(|(_, factors)| *factors);
         let are_low_stacks = self.calm == CALM_TICKS && moving.all(SubstepFactors::is_in_low_stack);
 
@@ -63,17 +81,19 @@ impl Care {
             let before = substeps(body);
             let needed = match factors {
                 None => substeps_of_unmoved(body),
-                Some(_) if is_handling => MOST_SUBSTEPS,
+                Some(_) if self.is_handling() => MOST_SUBSTEPS,
                 Some(_) if are_low_stacks => BASE_SUBSTEPS.max(before.saturating_sub(DECAY)),
                 Some(factors) => factors.substeps().max(before.saturating_sub(DECAY)),
             };
-            if needed != before {
+            let way = factors.map_or_else(|| body.soft_ccd_prediction(), |it| way_ahead(it, body));
+            if needed != before || way != body.soft_ccd_prediction() {
                 let body = &mut engine.bodies[handle];
                 body.set_additional_solver_iterations(needed - BASE_SUBSTEPS);
+                body.set_soft_ccd_prediction(way);
             }
         }
         let prediction = engine.affordable(motion.prediction(engine.parameters.dt));
-        let mode = self.mode(motion, is_handling, are_low_stacks, prediction);
+        let mode = self.mode(motion, are_low_stacks, prediction);
         mode.set(engine.parameters);
     }
 
@@ -83,37 +103,37 @@ impl Care {
     }
 
     fn pass_tick(&mut self, handles: bool, lands: bool) {
+        self.handling = ticks_left(self.handling, HANDLING_TICKS, handles);
         self.landing = ticks_left(self.landing, LANDING_TICKS, lands);
-        self.calm = match handles || self.is_landing() {
+        self.calm = match self.is_handling() || self.is_landing() {
             true => 0,
             false => CALM_TICKS.min(self.calm + 1),
         };
+    }
+
+    fn is_handling(self) -> bool {
+        self.handling > 0
     }
 
     fn is_landing(self) -> bool {
         self.landing > 0
     }
 
-    fn mode(
-        self,
-        motion: Motion,
-        is_handling: bool,
-        are_low_stacks: bool,
-        prediction: f32,
-    ) -> Mode {
-        let sweeps = match self.is_landing() {
-            true => LANDING_SWEEPS,
-            false if are_low_stacks => LOW_STACK_SWEEPS,
-            false => SWEEPS,
+    fn mode(self, motion: Motion, are_low_stacks: bool, prediction: f32) -> Mode {
+        let sweeps = match (self.is_landing(), self.is_handling()) {
+            (true, _) => LANDING_SWEEPS,
+            (false, true) => HANDLING_SWEEPS,
+            (false, false) if are_low_stacks => LOW_STACK_SWEEPS,
+            (false, false) => SWEEPS,
         };
         let fastest_point = motion.fastest_point;
         Mode {
             sweeps,
             prediction,
-            recycles: !is_handling && !self.is_landing(),
+            recycles: !self.is_handling() && !self.is_landing(),
             // Among contacts predicted far ahead, a cluster may lack the corner that touches.
-            clusters: is_handling && prediction <= PREDICTION,
-            is_continuous: fastest_point.is_some_and(|it| is_handling || it > SPEED_OF_CCD),
+            clusters: self.is_handling() && prediction <= PREDICTION,
+            is_continuous: fastest_point.is_some_and(|it| self.is_handling() || it > SPEED_OF_CCD),
         }
     }
 }
@@ -145,6 +165,21 @@ impl Motion {
         if !factors.is_jointed && !factors.is_handled {
             self.landing = self.landing.max(landing_speed(engine, handle));
         }
+    }
+}
+
+/// Distance of the contact prediction for a body near a hand or a link, in units.
+fn way_ahead(factors: SubstepFactors, body: &RigidBody) -> f32 {
+    let speed_to_hands = match factors.is_near_others {
+        true => SPEED_TO_HANDS_BESIDE_OTHERS,
+        false => SPEED_TO_HANDS,
+    };
+    let is_seen_ahead = factors.is_near_hand
+        && body.linvel().length() > speed_to_hands
+        && body.angvel().length() < MOST_TURNING;
+    match is_seen_ahead {
+        true => WAY_TO_HANDS,
+        false => 0.0,
     }
 }
 

@@ -29,6 +29,12 @@ pub(super) const LOW_STACK_SWEEPS: Sweeps = Sweeps {
     plain: 1,
 };
 
+/// Sweeps while hands or robots handle something: an object squeezed between them is stiffer this way.
+pub(super) const HANDLING_SWEEPS: Sweeps = Sweeps {
+    correcting: 1,
+    plain: 1,
+};
+
 /// Sweeps while something lands flat. Its corners must share the impact equally before friction acts on the rest, otherwise friction turns the
 /// difference into a slide.
 pub(super) const LANDING_SWEEPS: Sweeps = Sweeps {

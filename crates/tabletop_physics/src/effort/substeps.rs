@@ -10,11 +10,26 @@ pub(crate) const BASE_SUBSTEPS: usize = 2;
 /// Least number of sub-steps of bodies outside low stacks, and of all bodies while any such body is awake.
 const LEAST_SUBSTEPS: usize = 4;
 
-/// Number of sub-steps of handled, free, fast and unevenly loaded bodies.
-pub(crate) const MOST_SUBSTEPS: usize = 20;
+/// Number of sub-steps of handled bodies.
+pub(crate) const MOST_SUBSTEPS: usize = 36;
+
+/// Number of sub-steps of a body that touches nothing yet, so that it lands well.
+pub(crate) const SUBSTEPS_OF_FREE: usize = 20;
 
 /// Number of sub-steps by the greatest depth of a body in its stack, from 1 on; the last one holds for all greater depths.
 const SUBSTEPS_BY_DEPTH: [usize; 16] = [4, 4, 4, 4, 6, 11, 12, 12, 13, 13, 13, 13, 14, 14, 14, 16];
+
+/// Least number of sub-steps of shapes other than blocks: they touch with fewer points.
+const SUBSTEPS_OF_OTHER_SHAPES: usize = 9;
+
+/// Least number of sub-steps of bodies held by joints.
+const SUBSTEPS_OF_JOINTED: usize = 7;
+
+/// Least number of sub-steps of bodies that touch one of a much different mass.
+const SUBSTEPS_OF_UNEVEN: usize = 16;
+
+/// Least number of sub-steps of fast bodies.
+const SUBSTEPS_OF_FAST: usize = 20;
 
 /// Speed, in units/s and rad/s together, from which a body is fast.
 const FAST: f32 = 20.0;
@@ -36,6 +51,10 @@ pub(crate) struct SubstepFactors {
     pub is_jointed: bool,
     /// True if a hand or a robot touches it.
     pub is_handled: bool,
+    /// True if it is near one.
+    pub is_near_hand: bool,
+    /// True if it is near something else, too.
+    pub is_near_others: bool,
     speed: f32,
 }
 
@@ -50,20 +69,27 @@ impl SubstepFactors {
             is_uneven: touches.uneven.contains(&number),
             is_jointed: engine.joints.attached_joints(handle).next().is_some(),
             is_handled: touches.handled.contains(&number),
+            is_near_hand: touches.near_hands.contains(&number),
+            is_near_others: touches.near_others.contains(&number),
             speed: speed(body),
         }
     }
 
     pub fn substeps(self) -> usize {
-        let is_fast = self.speed > FAST && !self.is_jointed;
-        if self.is_handled || self.is_uneven || is_fast {
-            return MOST_SUBSTEPS;
-        }
-        match self.depth {
+        let by_depth = match self.depth {
             Some(depth) => SUBSTEPS_BY_DEPTH[(depth as usize - 1).min(SUBSTEPS_BY_DEPTH.len() - 1)],
             None if self.is_jointed => LEAST_SUBSTEPS,
-            None => MOST_SUBSTEPS,
-        }
+            None => SUBSTEPS_OF_FREE,
+        };
+        let others = [
+            (!self.is_block, SUBSTEPS_OF_OTHER_SHAPES),
+            (self.is_uneven, SUBSTEPS_OF_UNEVEN),
+            (self.is_jointed, SUBSTEPS_OF_JOINTED),
+            (self.is_handled, MOST_SUBSTEPS),
+            (self.speed > FAST && !self.is_jointed, SUBSTEPS_OF_FAST),
+        ];
+        let others = others.into_iter().filter(|(applies, _)| *applies);
+        others.fold(by_depth, |most, (_, substeps)| most.max(substeps))
     }
 
     /// True if it stands in a low stack of blocks that are about equally heavy.
@@ -106,6 +132,8 @@ mod tests {
         is_uneven: false,
         is_jointed: false,
         is_handled: false,
+        is_near_hand: false,
+        is_near_others: false,
         speed: 0.0,
     };
 
@@ -120,22 +148,18 @@ mod tests {
     }
 
     #[test]
-    fn uneven_handled_and_fast_bodies_get_the_most_substeps() {
-        let others = [
-            SubstepFactors {
-                is_uneven: true,
-                ..BLOCK
-            },
-            SubstepFactors {
-                is_handled: true,
-                ..BLOCK
-            },
-            SubstepFactors {
-                speed: 2.0 * FAST,
-                ..BLOCK
-            },
-        ];
-        assert_eq!(others.map(SubstepFactors::substeps), [MOST_SUBSTEPS; 3]);
+    fn the_greatest_need_counts() {
+        let uneven = SubstepFactors {
+            is_uneven: true,
+            is_block: false,
+            ..BLOCK
+        };
+        assert_eq!(uneven.substeps(), SUBSTEPS_OF_UNEVEN);
+        let handled = SubstepFactors {
+            is_handled: true,
+            ..uneven
+        };
+        assert_eq!(handled.substeps(), MOST_SUBSTEPS);
     }
 
     #[test]

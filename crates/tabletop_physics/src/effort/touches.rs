@@ -18,6 +18,10 @@ pub(crate) struct Touches {
     pub uneven: BTreeSet<u32>,
     /// Bodies that touch something moved by a hand or a robot.
     pub handled: BTreeSet<u32>,
+    /// Bodies that are near something moved by a hand or a robot.
+    pub near_hands: BTreeSet<u32>,
+    /// Those of them that are near something else, too.
+    pub near_others: BTreeSet<u32>,
     /// True if any of them is awake, or a body near it moves.
     pub is_handling: bool,
 }
@@ -26,6 +30,7 @@ impl Touches {
     pub fn of(engine: &Engine) -> Self {
         let (mut supported, mut touching) = (Vec::new(), Vec::new());
         let (mut uneven, mut handled) = (BTreeSet::new(), BTreeSet::new());
+        let mut near_hands = BTreeSet::new();
         let mut is_handling = false;
         for pair in engine.narrow_phase.contact_pairs() {
             let [first, second] =
@@ -44,6 +49,7 @@ impl Touches {
                 (Mover::Forces(a, body), Mover::Hand(hand))
                 | (Mover::Hand(hand), Mover::Forces(a, body)) => {
                     is_handling |= !body.is_sleeping() || hand.is_moving();
+                    near_hands.insert(a);
                     if touches {
                         supported.push(a);
                         handled.insert(a);
@@ -61,9 +67,27 @@ impl Touches {
             depths: Depths::new(&supported, &touching),
             uneven,
             handled,
+            near_others: near_others(engine, &near_hands),
+            near_hands,
             is_handling,
         }
     }
+}
+
+/// Those of these bodies that are near a body that no hand or robot moves, with or without a predicted contact.
+fn near_others(engine: &Engine, bodies: &BTreeSet<u32>) -> BTreeSet<u32> {
+    if bodies.is_empty() {
+        return BTreeSet::new();
+    }
+    let pairs = engine.narrow_phase.contact_pairs();
+    let movers = pairs
+        .map(|pair| bodies_of(pair, engine.colliders).map(|body| Mover::of(body, engine.bodies)));
+    let free = movers.flat_map(|movers| match movers {
+        [Mover::Forces(a, _), Mover::Forces(b, _)] => vec![a, b],
+        [Mover::Forces(a, _), Mover::Nothing] | [Mover::Nothing, Mover::Forces(a, _)] => vec![a],
+        [Mover::Hand(_), _] | [_, Mover::Hand(_)] | [Mover::Nothing, Mover::Nothing] => vec![],
+    });
+    free.filter(|body| bodies.contains(body)).collect()
 }
 
 fn sorted(a: f32, b: f32) -> [f32; 2] {
