@@ -1,4 +1,4 @@
-//! An arm: the turning joints between two links.
+//! An arm: the moving joints between two links.
 
 use glam::{DAffine3, DVec3};
 
@@ -12,15 +12,16 @@ pub const MOST_ARM_JOINTS: usize = 16;
 /// The motion of a body: the velocity of one of its points and its angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DTwist {
-    /// Velocity of the point, in m/s, or in m per rad of a joint.
+    /// Velocity of the point, in m/s, or in m per rad or m of a joint.
     pub linear: DVec3,
-    /// In rad/s, or in rad per rad of a joint.
+    /// In rad/s, or in rad per rad or m of a joint.
     pub angular: DVec3,
 }
 
-/// The turning joints from a base link to a tip link, compiled for speed: the fixed parts between them are merged.
+/// The joints that turn or slide from a base link to a tip link, compiled for speed: the fixed parts between them are merged.
 ///
-/// Everything is in the base link's frame, in m and rad; angles are in the order from the base to the tip.
+/// Everything is in the base link's frame, in m and rad. Angles are in the order from the base to the tip; the angle of a joint that slides is
+/// how far it is out, in m.
 #[derive(Clone, Debug)]
 pub struct ArmChain {
     joints: Vec<ModelJointId>,
@@ -37,6 +38,8 @@ struct Segment {
     origin: DAffine3,
     /// In the joint's frame.
     axis: DVec3,
+    /// True if the joint turns about the axis, false if it slides along it.
+    turns: bool,
 }
 
 impl ArmChain {
@@ -52,7 +55,7 @@ impl ArmChain {
     ///
     /// # Errors
     ///
-    /// A link does not exist, or the joints between the links are not one to sixteen turning joints that follow no other joint.
+    /// A link does not exist, or the joints between the links are not one to sixteen that move and follow no other joint.
     pub fn between(model: &RobotModel, base: &str, tip: &str) -> Result<Self, ModelError> {
         Self::new(model, model.find_link(base)?, model.find_link(tip)?)
     }
@@ -61,7 +64,7 @@ impl ArmChain {
     ///
     /// # Errors
     ///
-    /// The joints between them are not one to sixteen turning joints that follow no other joint.
+    /// The joints between them are not one to sixteen that move and follow no other joint.
     pub fn new(model: &RobotModel, base: LinkId, tip: LinkId) -> Result<Self, ModelError> {
         let no_arm = |reason: String| ModelError::NoArm {
             base: model.link(base).name.clone(),
@@ -86,16 +89,18 @@ impl ArmChain {
             if joint.kind == JointType::Fixed {
                 continue;
             }
-            if !joint.kind.turns() || joint.mimic.is_some() {
+            if let Some(mimic) = joint.mimic {
                 return Err(no_arm(format!(
-                    "joint {} does not turn by itself",
-                    joint.name
+                    "joint {} does not move by itself: it mimics {}",
+                    joint.name,
+                    model.joint(mimic.leader).name
                 )));
             }
             joints.push(id);
             segments.push(Segment {
                 origin: std::mem::replace(&mut rigid, DAffine3::IDENTITY),
                 axis: joint.axis,
+                turns: joint.kind.turns(),
             });
         }
         if joints.is_empty() || joints.len() > MOST_ARM_JOINTS {
@@ -115,7 +120,7 @@ impl ArmChain {
         })
     }
 
-    /// The same arm with other limits: least and largest angle of each joint, in rad. Joints without new limits keep theirs.
+    /// The same arm with other limits: least and largest angle of each joint, in rad (m). Joints without new limits keep theirs.
     #[must_use]
     pub fn with_limits(mut self, limits: impl IntoIterator<Item = [f64; 2]>) -> Self {
         for (own, limits) in self.limits.iter_mut().zip(limits) {
@@ -129,7 +134,7 @@ impl ArmChain {
         &self.joints
     }
 
-    /// Least and largest angle of each joint, in rad.
+    /// Least and largest angle of each joint, in rad (m).
     pub fn limits(&self) -> &[[f64; 2]] {
         &self.limits
     }
@@ -159,21 +164,21 @@ impl ArmChain {
     pub fn tip(&self, angles: &[f64]) -> DAffine3 {
         let mut frame = DAffine3::IDENTITY;
         for (segment, &angle) in self.segments.iter().zip(angles) {
-            frame = segment.turned(frame, angle);
+            frame = segment.moved(frame, angle);
         }
         frame * self.end
     }
 
-    /// The frames behind each joint, from the base to the tip: those that the joints turn.
+    /// The frames behind each joint, from the base to the tip: those that the joints move.
     pub fn frames(&self, angles: &[f64]) -> impl Iterator<Item = DAffine3> {
         let segments = self.segments.iter().zip(angles);
         segments.scan(DAffine3::IDENTITY, |frame, (segment, &angle)| {
-            *frame = segment.turned(*frame, angle);
+            *frame = segment.moved(*frame, angle);
             Some(*frame)
         })
     }
 
-    /// The motion of the tip per rad of each joint (the geometric Jacobian), in the base's frame.
+    /// The motion of the tip per rad (m) of each joint (the geometric Jacobian), in the base's frame.
     pub fn jacobian(&self, angles: &[f64]) -> Vec<DTwist> {
         self.tip_and_jacobian(angles).1
     }
@@ -183,23 +188,33 @@ impl ArmChain {
         let segments = self.segments.iter().zip(angles);
         let axes: Vec<_> = segments
             .map(|(segment, &angle)| {
-                frame = segment.turned(frame, angle);
+                frame = segment.moved(frame, angle);
                 (frame.translation, frame.matrix3 * segment.axis)
             })
             .collect();
         let tip = frame * self.end;
-        let jacobian = axes.into_iter().map(|(origin, axis)| DTwist {
-            linear: axis.cross(tip.translation - origin),
-            angular: axis,
+        let axes = self.segments.iter().zip(axes);
+        let jacobian = axes.map(|(segment, (origin, axis))| match segment.turns {
+            true => DTwist {
+                linear: axis.cross(tip.translation - origin),
+                angular: axis,
+            },
+            false => DTwist {
+                linear: axis,
+                angular: DVec3::ZERO,
+            },
         });
         (tip, jacobian.collect())
     }
 }
 
 impl Segment {
-    fn turned(&self, before: DAffine3, angle: f64) -> DAffine3 {
+    fn moved(&self, before: DAffine3, angle: f64) -> DAffine3 {
         let mut frame = before * self.origin;
-        frame.matrix3 *= turn_about(self.axis, angle);
+        match self.turns {
+            true => frame.matrix3 *= turn_about(self.axis, angle),
+            false => frame.translation += frame.matrix3 * (self.axis * angle),
+        }
         frame
     }
 }

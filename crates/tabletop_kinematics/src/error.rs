@@ -16,6 +16,16 @@ pub enum ModelError {
         /// The reader's message.
         message: String,
     },
+    /// The text is a template of URDFs.
+    #[error(
+        "line {line}: {found} is xacro, which makes URDF: expand it with `xacro NAME.urdf.xacro > NAME.urdf` (ROS, or `pip install xacro`) and use the result"
+    )]
+    Xacro {
+        /// The line of the first element that is.
+        line: usize,
+        /// The element, or the expression in it.
+        found: String,
+    },
     /// Elements inside elements without end.
     #[error("line {line}: elements are nested more than {deepest} deep")]
     TooDeep {
@@ -114,14 +124,6 @@ pub enum ModelError {
         element: String,
         /// The fault.
         fault: &'static str,
-    },
-    /// A capsule, which is not supported.
-    #[error("line {line}: {element}: capsules are not supported: use a cylinder and two spheres")]
-    Capsule {
-        /// The line in which the element starts.
-        line: usize,
-        /// The link that has it.
-        element: String,
     },
     /// There is no such link.
     #[error("robot {robot} has no link {link}")]

@@ -42,7 +42,7 @@ pub struct Miss {
     miss.rotation.to_degrees()
 )]
 pub struct Unreachable {
-    /// The angles that come nearest, in rad, a rad counting as much as 0.3 m.
+    /// The angles that come nearest, in rad (m), a rad counting as much as 0.3 m.
     pub best: Vec<f64>,
     /// Their error against the target.
     pub miss: Miss,
@@ -60,7 +60,7 @@ const METERS_PER_RAD: f64 = 0.3;
 const LEAST_DAMPING: f64 = 1e-7;
 /// Squared damping per squared miss.
 const DAMPING: f64 = 0.1;
-/// Largest turn of a joint in a step, in rad.
+/// Largest turn (slide) of a joint in a step, in rad (m).
 const LONGEST_STEP: f64 = 0.7;
 /// The part of the way back to the start that the free motion goes in a step.
 const PULL: f64 = 0.5;

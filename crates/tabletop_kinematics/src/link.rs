@@ -9,6 +9,8 @@ use crate::ModelJointId;
 pub struct Link {
     /// Its name, unique among links.
     pub name: String,
+    /// The line of the description in which it starts, from 1.
+    pub line: usize,
     /// The joint that carries it; `None` for the root.
     pub joint: Option<ModelJointId>,
     /// Its mass and inertia.

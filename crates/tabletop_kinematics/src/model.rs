@@ -29,6 +29,8 @@ impl JointType {
 pub struct ModelJoint {
     /// Its name, unique among joints.
     pub name: String,
+    /// The line of the description in which it starts, from 1.
+    pub line: usize,
     /// Its degrees of freedom.
     pub kind: JointType,
     /// The link that it hangs on.

@@ -60,6 +60,9 @@ pub(crate) fn outline(text: &str) -> Result<Outline<'_>, ModelError> {
         }
         let is_end = markup.starts_with("</");
         let tag = tag(markup);
+        if let Some(found) = xacro(tag, markup) {
+            return Err(ModelError::Xacro { line, found });
+        }
         if is_end {
             if let Some(&(opened, since, _)) = open.last()
                 && opened != tag
@@ -92,6 +95,20 @@ pub(crate) fn outline(text: &str) -> Result<Outline<'_>, ModelError> {
         outline.unbalanced = Some((tag, line, "it does not end".to_owned()));
     }
     Ok(outline)
+}
+
+/// What in a tag is of xacro and not of URDF: the element itself, or an expression in an attribute.
+fn xacro(tag: &str, markup: &str) -> Option<String> {
+    if tag.starts_with("xacro:") {
+        return Some(format!("<{tag}>"));
+    }
+    let mut values = markup.split(['"', '\'']).skip(1).step_by(2);
+    let is_expression = |value: &&str| {
+        ["${", "$(arg ", "$(find "]
+            .iter()
+            .any(|it| value.contains(it))
+    };
+    values.find(is_expression).map(str::to_owned)
 }
 
 /// The name in a tag.

@@ -156,8 +156,16 @@ fn every_fault_is_reported_with_its_place() {
             "line 2: link a: a length is negative or not finite",
         ),
         (
-            body("<capsule radius=\"1\" length=\"1\"/>"),
-            "line 2: link a: capsules are not supported: use a cylinder and two spheres",
+            body("<capsule radius=\"-1\" length=\"1\"/>"),
+            "line 2: link a: a length is negative or not finite",
+        ),
+        (
+            robot("<xacro:arm name=\"left\"/>"),
+            "line 4: <xacro:arm> is xacro, which makes URDF: expand it with `xacro NAME.urdf.xacro > NAME.urdf` (ROS, or `pip install xacro`) and use the result",
+        ),
+        (
+            body("<sphere radius='${r / 2}'/>"),
+            "line 3: ${r / 2} is xacro, which makes URDF: expand it with `xacro NAME.urdf.xacro > NAME.urdf` (ROS, or `pip install xacro`) and use the result",
         ),
     ];
     for (text, expected) in cases {
@@ -265,6 +273,48 @@ fn a_cylinder_without_thickness_has_a_radius_of_zero() {
 }
 
 #[test]
+fn a_capsule_is_a_cylinder_and_two_balls() {
+    let text = body("<capsule radius=\"0.1\" length=\"0.6\"/>").replace(
+        "<collision>",
+        "<collision><origin xyz=\"1 0 0\" rpy=\"0 1.5707963267948966 0\"/>",
+    );
+    let robot = RobotModel::from_urdf(&text).unwrap();
+    let link = robot.links().first().unwrap();
+    let found: Vec<_> = link
+        .collisions
+        .iter()
+        .map(|shape| {
+            (
+                shape.geometry.clone(),
+                (shape.origin.translation * 1e6).round() / 1e6,
+            )
+        })
+        .collect();
+    let ball = Geometry::Sphere { radius: 0.1 };
+    let cylinder = Geometry::Cylinder {
+        radius: 0.1,
+        length: 0.6,
+    };
+    let at = |x| glam::DVec3::new(x, 0.0, 0.0);
+    assert_eq!(
+        found,
+        [
+            (cylinder, at(1.0)),
+            (ball.clone(), at(0.7)),
+            (ball, at(1.3))
+        ]
+    );
+}
+
+#[test]
+fn what_xacro_has_made_is_read() {
+    let text = "<?xml version='1.0'?>\n<!-- ${made} by <xacro:x> -->\n\
+        <robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>\n<link name='a'/></robot>";
+    let robot = RobotModel::from_urdf(text).unwrap();
+    assert_eq!(robot.links()[0].line, 4);
+}
+
+#[test]
 fn a_long_chain_is_read() {
     let mut text = "<robot name=\"snake\"><link name=\"0\"/>".to_owned();
     for i in 1..=5000 {
@@ -298,15 +348,27 @@ fn arms_that_are_none_are_refused() {
             "torso",
             "no arm leads from link torso to link torso: there are 0 joints instead of 1 to 16",
         ),
-        (
-            "torso",
-            "l_gripper_l_finger",
-            "no arm leads from link torso to link l_gripper_l_finger: joint l_gripper_l_finger_joint does not turn by itself",
-        ),
     ] {
         let error = ArmChain::between(&robot, base, tip).unwrap_err();
         assert_eq!(error.to_string(), message);
     }
+}
+
+#[test]
+fn a_joint_that_follows_another_is_no_part_of_an_arm() {
+    let text = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>\
+        <joint name='i' type='prismatic'><parent link='a'/><child link='b'/><limit lower='0' upper='1'/></joint>\
+        <joint name='j' type='prismatic'><parent link='b'/><child link='c'/><limit lower='0' upper='1'/><mimic joint='i'/></joint></robot>";
+    let robot = RobotModel::from_urdf(text).unwrap();
+    assert_eq!(
+        ArmChain::between(&robot, "a", "b").unwrap().joints().len(),
+        1
+    );
+    let error = ArmChain::between(&robot, "a", "c").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "no arm leads from link a to link c: joint j does not move by itself: it mimics i"
+    );
 }
 
 proptest! {

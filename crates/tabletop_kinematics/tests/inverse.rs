@@ -5,7 +5,7 @@ use std::array::from_fn;
 
 use glam::{DAffine3, DQuat, DVec3};
 use proptest::prelude::*;
-use tabletop_kinematics::{ArmChain, Target, baxter};
+use tabletop_kinematics::{ArmChain, RobotModel, Target, baxter};
 
 const ARM_JOINTS: usize = 7;
 
@@ -153,6 +153,71 @@ fn narrower_limits_are_kept() {
     for _ in 0..100 {
         let target = Target::Pose(arm.tip(&random_angles(&arm, &mut state)));
         assert_solves(&arm, &target, &arm.solve(&target, &START).unwrap());
+    }
+}
+
+/// A lift with three joints that turn and a wrist on it.
+const LIFT: &str = r#"<robot name="lift">
+    <link name="0"/> <link name="1"/> <link name="2"/> <link name="3"/> <link name="4"/> <link name="5"/> <link name="6"/> <link name="7"/>
+    <joint name="lift" type="prismatic"><parent link="0"/><child link="1"/><origin xyz="0.1 0 0.4" rpy="0 0.2 0"/>
+        <axis xyz="0 0 1"/><limit lower="0" upper="0.4"/></joint>
+    <joint name="a" type="revolute"><parent link="1"/><child link="2"/><origin xyz="0 0 0.2"/>
+        <axis xyz="0 0 1"/><limit lower="-2" upper="2"/></joint>
+    <joint name="b" type="revolute"><parent link="2"/><child link="3"/><origin xyz="0.1 0 0"/>
+        <axis xyz="0 1 0"/><limit lower="-1.5" upper="1.5"/></joint>
+    <joint name="c" type="revolute"><parent link="3"/><child link="4"/><origin xyz="0.4 0 0"/>
+        <axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>
+    <joint name="d" type="continuous"><parent link="4"/><child link="5"/><origin xyz="0.3 0 0"/><axis xyz="1 0 0"/></joint>
+    <joint name="e" type="revolute"><parent link="5"/><child link="6"/><axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>
+    <joint name="f" type="continuous"><parent link="6"/><child link="7"/><axis xyz="1 0 0"/><origin xyz="0.1 0 0"/></joint>
+</robot>"#;
+
+fn lift() -> ArmChain {
+    let robot = RobotModel::from_urdf(LIFT).unwrap();
+    let arm = ArmChain::between(&robot, "0", "7").unwrap();
+    let limits: Vec<_> = arm
+        .limits()
+        .iter()
+        .map(|limits| limits.map(|limit| limit.clamp(-6.0, 6.0)))
+        .collect();
+    arm.with_limits(limits)
+}
+
+#[test]
+fn an_arm_on_a_lift_reaches_what_it_can() {
+    let arm = lift();
+    let mut state = 5;
+    let mut high = 0;
+    for i in 0..300 {
+        let angles = random_angles(&arm, &mut state);
+        let target = Target::Pose(arm.tip(&angles));
+        match arm.solve(&target, &[0.2, 0.0, 0.3, 0.3, 0.0, 0.3, 0.0]) {
+            Ok(found) => {
+                assert_solves(&arm, &target, &found);
+                high += usize::from(found[0] > 0.25);
+            }
+            Err(error) => panic!("{i}: {error}"),
+        }
+    }
+    assert!(high > 50, "the lift is used: {high}");
+}
+
+#[test]
+fn an_arm_on_a_lift_has_the_frames_of_its_model() {
+    let robot = RobotModel::from_urdf(LIFT).unwrap();
+    let arm = lift();
+    let angles = random_angles(&arm, &mut 9);
+    let mut values = robot.zero();
+    arm.set_angles(&angles, &mut values);
+    let frames = robot.frames(&values);
+    let tip = robot.find_link("7").unwrap();
+    assert!(arm.tip(&angles).abs_diff_eq(frames[tip], 1e-12));
+    let ours = arm.jacobian(&angles);
+    let theirs = robot.jacobian(&frames, tip, DVec3::ZERO);
+    for (joint, twist) in arm.joints().iter().zip(ours) {
+        let other = theirs[joint.index()];
+        assert!(twist.linear.distance(other.linear) < 1e-12, "{twist:?}");
+        assert!(twist.angular.distance(other.angular) < 1e-12, "{twist:?}");
     }
 }
 

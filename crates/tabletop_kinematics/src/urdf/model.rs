@@ -81,17 +81,18 @@ impl Lines {
                 let color = material.color.as_ref();
                 color.or_else(|| shared?.color.as_ref())
             });
-            read.shape(&visual.origin, &visual.geometry, color)
+            read.shapes(&visual.origin, &visual.geometry, color)
         });
         let collisions = link
             .collision
             .iter()
-            .map(|collision| read.shape(&collision.origin, &collision.geometry, None));
+            .map(|collision| read.shapes(&collision.origin, &collision.geometry, None));
         Ok(Link {
             inertial: read.inertial(&link.inertial)?,
-            visuals: visuals.collect::<Result<_, _>>()?,
-            collisions: collisions.collect::<Result<_, _>>()?,
+            visuals: visuals.collect::<Result<Vec<_>, _>>()?.concat(),
+            collisions: collisions.collect::<Result<Vec<_>, _>>()?.concat(),
             name: link.name.clone(),
+            line: self.link(index),
             joint: None,
         })
     }
@@ -143,6 +144,7 @@ impl Lines {
             .map_or(0.0, |dynamics| dynamics.damping);
         Ok(ModelJoint {
             name: joint.name.clone(),
+            line,
             kind,
             parent,
             child,

@@ -96,45 +96,50 @@ impl Numbers {
         })
     }
 
-    pub fn shape(
+    /// The bodies of a shape: a capsule is a cylinder with a ball at each end.
+    pub fn shapes(
         &self,
         origin: &urdf_rs::Pose,
         geometry: &urdf_rs::Geometry,
         color: Option<&urdf_rs::Color>,
-    ) -> Result<LinkShape, ModelError> {
-        let geometry = match geometry {
-            urdf_rs::Geometry::Box { size } => Geometry::Box {
+    ) -> Result<Vec<LinkShape>, ModelError> {
+        let origin = self.pose(origin)?;
+        let at = |height: f64, geometry| LinkShape {
+            origin: origin * DAffine3::from_translation(DVec3::Z * height),
+            geometry,
+            color: color.map(|color| *color.rgba),
+        };
+        let whole = |geometry| vec![at(0.0, geometry)];
+        Ok(match geometry {
+            urdf_rs::Geometry::Box { size } => whole(Geometry::Box {
                 size: DVec3::new(
                     self.length(size[0])?,
                     self.length(size[1])?,
                     self.length(size[2])?,
                 ),
-            },
-            urdf_rs::Geometry::Cylinder { radius, length } => Geometry::Cylinder {
+            }),
+            urdf_rs::Geometry::Cylinder { radius, length } => whole(Geometry::Cylinder {
                 radius: self.length(*radius)?,
                 length: self.length(*length)?,
-            },
-            urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere {
+            }),
+            urdf_rs::Geometry::Sphere { radius } => whole(Geometry::Sphere {
                 radius: self.length(*radius)?,
-            },
-            urdf_rs::Geometry::Mesh { filename, scale } => Geometry::Mesh {
+            }),
+            urdf_rs::Geometry::Mesh { filename, scale } => whole(Geometry::Mesh {
                 file: filename.clone(),
                 scale: match scale {
                     Some(scale) => self.vector(**scale, "a mesh's scale is not finite")?,
                     None => DVec3::ONE,
                 },
-            },
-            urdf_rs::Geometry::Capsule { .. } => {
-                return Err(ModelError::Capsule {
-                    line: self.line,
-                    element: self.element.clone(),
-                });
+            }),
+            urdf_rs::Geometry::Capsule { radius, length } => {
+                let (radius, length) = (self.length(*radius)?, self.length(*length)?);
+                vec![
+                    at(0.0, Geometry::Cylinder { radius, length }),
+                    at(-length / 2.0, Geometry::Sphere { radius }),
+                    at(length / 2.0, Geometry::Sphere { radius }),
+                ]
             }
-        };
-        Ok(LinkShape {
-            origin: self.pose(origin)?,
-            geometry,
-            color: color.map(|color| *color.rgba),
         })
     }
 }
