@@ -357,8 +357,8 @@ fn arms_that_are_none_are_refused() {
 #[test]
 fn a_joint_that_follows_another_is_no_part_of_an_arm() {
     let text = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>\
-        <joint name='i' type='prismatic'><parent link='a'/><child link='b'/><limit lower='0' upper='1'/></joint>\
-        <joint name='j' type='prismatic'><parent link='b'/><child link='c'/><limit lower='0' upper='1'/><mimic joint='i'/></joint></robot>";
+        <joint name='i' type='prismatic'><parent link='a'/><child link='b'/><limit lower='0' upper='1' velocity='1'/></joint>\
+        <joint name='j' type='prismatic'><parent link='b'/><child link='c'/><limit lower='0' upper='1' velocity='1'/><mimic joint='i'/></joint></robot>";
     let robot = RobotModel::from_urdf(text).unwrap();
     assert_eq!(
         ArmChain::between(&robot, "a", "b").unwrap().joints().len(),

@@ -160,15 +160,15 @@ fn narrower_limits_are_kept() {
 const LIFT: &str = r#"<robot name="lift">
     <link name="0"/> <link name="1"/> <link name="2"/> <link name="3"/> <link name="4"/> <link name="5"/> <link name="6"/> <link name="7"/>
     <joint name="lift" type="prismatic"><parent link="0"/><child link="1"/><origin xyz="0.1 0 0.4" rpy="0 0.2 0"/>
-        <axis xyz="0 0 1"/><limit lower="0" upper="0.4"/></joint>
+        <axis xyz="0 0 1"/><limit lower="0" upper="0.4" velocity="1"/></joint>
     <joint name="a" type="revolute"><parent link="1"/><child link="2"/><origin xyz="0 0 0.2"/>
-        <axis xyz="0 0 1"/><limit lower="-2" upper="2"/></joint>
+        <axis xyz="0 0 1"/><limit lower="-2" upper="2" velocity="1"/></joint>
     <joint name="b" type="revolute"><parent link="2"/><child link="3"/><origin xyz="0.1 0 0"/>
-        <axis xyz="0 1 0"/><limit lower="-1.5" upper="1.5"/></joint>
+        <axis xyz="0 1 0"/><limit lower="-1.5" upper="1.5" velocity="1"/></joint>
     <joint name="c" type="revolute"><parent link="3"/><child link="4"/><origin xyz="0.4 0 0"/>
-        <axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>
+        <axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1"/></joint>
     <joint name="d" type="continuous"><parent link="4"/><child link="5"/><origin xyz="0.3 0 0"/><axis xyz="1 0 0"/></joint>
-    <joint name="e" type="revolute"><parent link="5"/><child link="6"/><axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>
+    <joint name="e" type="revolute"><parent link="5"/><child link="6"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1"/></joint>
     <joint name="f" type="continuous"><parent link="6"/><child link="7"/><axis xyz="1 0 0"/><origin xyz="0.1 0 0"/></joint>
 </robot>"#;
 
