@@ -71,7 +71,7 @@ fn robot(model: &RobotModel) -> Result<Vec<DrawnFigure>, Box<dyn Error>> {
     for joint in &layout.joints {
         match joint.role {
             JointRole::Limb { .. } | JointRole::Neck => {
-                configuration[model.find_joint(joint.name.as_str())?] = joint.home;
+                configuration[model.find_joint(&joint.urdf_name)?] = joint.home;
             }
             JointRole::Gripper(limb) => {
                 for finger in &layout.limb(limb).gripper.finger_joints {

@@ -7,7 +7,7 @@ use std::{
 
 use bevy::math::DVec3;
 use tabletop::{
-    core::LayoutFile,
+    core::{LayoutFile, UrdfJoint},
     dataset::import_recording,
     headless_app_with,
     kinematics::RobotModel,
@@ -259,7 +259,13 @@ fn urdf(bytes: &[u8]) {
 
 fn layout(bytes: &[u8]) {
     if let Ok(file) = LayoutFile::read(&String::from_utf8_lossy(bytes)) {
-        let _layout = file.layout(|_| Some([-1.0, 1.0]));
+        let _layout = file.layout(|name| {
+            Some(UrdfJoint {
+                name: name.to_owned(),
+                slides: false,
+                limits: [-1.0, 1.0],
+            })
+        });
     }
 }
 

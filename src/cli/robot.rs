@@ -195,7 +195,7 @@ impl Answerer {
         for (joint, position) in layout.joints.iter().zip(&positions) {
             match joint.role {
                 JointRole::Limb { .. } | JointRole::Neck => {
-                    let joint = self.robot.find_joint(joint.name.as_str());
+                    let joint = self.robot.find_joint(&joint.urdf_name);
                     configuration[joint.map_err(NoAnswer::input)?] = *position;
                 }
                 JointRole::Gripper(limb) => {
@@ -238,8 +238,8 @@ impl Answerer {
                 reason: format!("there are {found} joints instead of {joints}"),
             }));
         }
-        let shoulder = self.layout.joint(limb.joints[0]).name;
-        if self.robot.find_joint(shoulder.as_str()) != Ok(chain.joints()[0]) {
+        let shoulder = &self.layout.joint(limb.joints[0]).urdf_name;
+        if self.robot.find_joint(shoulder) != Ok(chain.joints()[0]) {
             return Err(NoAnswer::Input(format!(
                 "link {tip} is not on the {arm} arm"
             )));

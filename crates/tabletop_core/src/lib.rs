@@ -115,7 +115,7 @@ pub use robot::{
     GripperLayout, HandCameraLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole,
     JointState, LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame,
     MANUAL_SPEED, Markers, NameError, Obstacle, Robot, RobotContact, RobotJoint, RobotLayout,
-    RobotMode, WIDEST_GRIP, snake_case,
+    RobotMode, UrdfJoint, WIDEST_GRIP, snake_case,
 };
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};

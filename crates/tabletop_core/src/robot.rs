@@ -11,7 +11,7 @@ pub use layout::{
     BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout,
     HandCameraLayout, JointId, JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
 };
-pub use layout_file::{LayoutError, LayoutFile};
+pub use layout_file::{LayoutError, LayoutFile, UrdfJoint};
 pub use name::snake_case;
 pub use name::{JointName, LimbName, NameError};
 pub use obstacle::Obstacle;
@@ -22,10 +22,10 @@ use tabletop_geometry::Pose;
 
 use crate::TICK_SECONDS;
 
-/// Speed of manual control, in rad/s, and units/s for grippers (report section 5.1).
+/// Speed of manual control, in rad/s, and units/s for what slides (report section 5.1).
 pub const MANUAL_SPEED: f64 = 1.0;
 
-/// A command to a joint. Angles in rad, openings of grippers in units, times in s.
+/// A command to a joint. Angles in rad, ways of joints that slide in m, openings of grippers in units, times in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drive {
     /// Move at this speed for the present tick only.
@@ -34,7 +34,7 @@ pub enum Drive {
     Position(f64),
     /// Go to this position at the speed of manual control, over as many ticks as it takes.
     Toward(f64),
-    /// Apply this torque, in N m, for the present tick only. Dynamic mode.
+    /// Apply this torque, in N m (a force in N to a joint that slides), for the present tick only. Dynamic mode.
     Torque(f64),
 }
 

@@ -88,10 +88,14 @@ impl ActionOrders {
 
     /// Simulates these ticks with the velocities of an action.
     pub fn move_at(&self, world: &mut World, action: &[f32], ticks: u64) {
-        let velocities = self.joints.iter().zip(action);
-        let drives = velocities
-            .map(|(&(name, _), &share)| (name, Drive::Velocity(f64::from(share) * MANUAL_SPEED)));
-        drive_for(world, drives.collect(), ticks);
+        let layout = world.resource::<RobotLayout>();
+        let joints = driven(layout).map(|joint| layout.joint(joint));
+        let velocities = joints.zip(action).map(|(joint, &share)| {
+            let velocity = f64::from(share) * joint.manual_speed();
+            (joint.name, Drive::Velocity(velocity))
+        });
+        let drives = velocities.collect();
+        drive_for(world, drives, ticks);
     }
 
     /// Simulates these ticks on the way to the positions of an action.

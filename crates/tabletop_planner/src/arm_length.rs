@@ -8,7 +8,8 @@ use tabletop_kinematics::ArmChain;
 pub(crate) struct ArmLength {
     /// The circle on which the second joint is turned by the first one.
     shoulder: ShoulderCircle,
-    /// Points that are fixed in the tip's frame, and the greatest distance of each from that circle.
+    /// Points that are fixed in the tip's frame, and the greatest distance of each from that circle. None if a joint slides: then any pose may
+    /// be reached.
     points: Vec<(DVec3, f64)>,
 }
 
@@ -59,13 +60,19 @@ impl ArmLength {
             points.push((in_tip(*last), to_last));
             points.push((in_tip(foot), to_before + foot.distance(*before)));
         }
+        if axes.contains(&DVec3::ZERO) {
+            return Self {
+                shoulder,
+                points: Vec::new(),
+            };
+        }
         let last = joints.last().copied().unwrap_or_default();
         let to_tip = to_each.last().copied().unwrap_or(0.0) + last.distance(tip.translation);
         points.push((DVec3::ZERO, to_tip));
         Self { shoulder, points }
     }
 
-    /// True if the tip is certainly nowhere at this pose.
+    /// True if the tip is certainly not at this pose.
     pub fn excludes(&self, tip: &DAffine3) -> bool {
         /// For rounding, in m.
         const SLACK: f64 = 1e-6;
@@ -88,9 +95,19 @@ impl ShoulderCircle {
 #[cfg(test)]
 mod tests {
     use tabletop_core::Random;
-    use tabletop_kinematics::baxter;
+    use tabletop_kinematics::{RobotModel, baxter};
 
     use super::*;
+
+    #[test]
+    fn an_arm_that_slides_excludes_nothing() {
+        let text = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>\
+            <joint name='i' type='prismatic'><parent link='a'/><child link='b'/><limit upper='1' velocity='1'/></joint>\
+            <joint name='j' type='revolute'><parent link='b'/><child link='c'/><limit upper='1' velocity='1'/></joint></robot>";
+        let arm = ArmChain::between(&RobotModel::from_urdf(text).unwrap(), "a", "c").unwrap();
+        let length = ArmLength::of(&arm, [0.0; 2]);
+        assert!(!length.excludes(&arm.tip(&[1.0, 0.5])));
+    }
 
     #[test]
     fn no_posture_is_excluded_and_far_poses_are() {

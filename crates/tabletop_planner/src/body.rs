@@ -35,7 +35,7 @@ pub struct LimbBody {
     pub finger: Vec3,
     /// Largest opening of its gripper, in units.
     pub widest: f32,
-    /// Speeds of its joints, in rad/s.
+    /// Speeds of its joints, in rad/s or m/s.
     pub speeds: Angles,
     /// Its angles at the beginning.
     pub home: Angles,
@@ -75,8 +75,6 @@ const STARTS: usize = 24;
 const FEW_STARTS: usize = 5;
 /// Share of the motors' speed that joints use.
 const SHARE_OF_SPEED: f64 = 0.75;
-/// Speed of joints without a motor, in rad/s.
-const SPEED: f64 = 1.0;
 
 impl LimbBody {
     fn new<'l>(
@@ -110,7 +108,7 @@ impl LimbBody {
             widest: layout.joint(limb.gripper.joint).limits[1] as f32,
             speeds: angles(joints.iter().map(|joint| match joint.speed > 0.0 {
                 true => joint.speed * SHARE_OF_SPEED,
-                false => SPEED,
+                false => joint.manual_speed(),
             })),
             home: angles(joints.iter().map(|joint| joint.home)),
             solids: Vec::new(),

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use bevy::prelude::*;
-use tabletop_core::{LayoutError, LayoutFile, RobotLayout, is_shipped};
-use tabletop_kinematics::{Geometry, ModelError, RobotModel};
+use tabletop_core::{LayoutError, LayoutFile, RobotLayout, UrdfJoint, is_shipped, snake_case};
+use tabletop_kinematics::{Geometry, JointType, ModelError, RobotModel};
 use thiserror::Error;
 
 use crate::{
@@ -29,7 +29,15 @@ pub struct Description {
 /// The error of a robot that cannot be used.
 #[derive(Debug, Error)]
 pub enum DescriptionError {
-    /// Its URDF cannot be used, or lacks a name of the `robot.ron`.
+    /// Its URDF cannot be used.
+    #[error("{}: {error}", .path.display())]
+    Urdf {
+        /// The URDF.
+        path: PathBuf,
+        /// The fault, with its line.
+        error: ModelError,
+    },
+    /// Its URDF lacks a name of the `robot.ron`.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// Its `robot.ron` cannot be used.
@@ -50,17 +58,18 @@ impl Description {
     ///
     /// The texts cannot be used, or the URDF lacks joints or links that the `robot.ron` names; the error names them.
     pub fn read(source: DescriptionSource) -> Result<Self, DescriptionError> {
-        let model = RobotModel::from_urdf(&source.urdf)?;
+        let model =
+            RobotModel::from_urdf(&source.urdf).map_err(|error| DescriptionError::Urdf {
+                path: source.path.clone(),
+                error,
+            })?;
         let folder = source.folder();
         let is_there = !is_shipped(&source.path) && folder.is_dir();
         if is_there && !source.reaches(folder) && names_files(&model) {
             return Err(DescriptionError::Outside(source.path));
         }
         let layout = match &source.layout {
-            Some(text) => LayoutFile::read(text)?.layout(|joint| {
-                let joint = model.find_joint(joint).ok()?;
-                Some(model.joint(joint).limits)
-            })?,
+            Some(text) => LayoutFile::read(text)?.layout(|name| urdf_joint(&model, name))?,
             None => RobotLayout::default(),
         };
         Articulation::new(model.clone(), layout.clone())?;
@@ -87,6 +96,18 @@ impl Description {
     }
 }
 
+/// The joint of this name or, if there is none, the one that has it in snake case.
+fn urdf_joint(model: &RobotModel, name: &str) -> Option<UrdfJoint> {
+    let named = |is_it: &dyn Fn(&str) -> bool| model.joints().iter().find(|it| is_it(&it.name));
+    let snake = snake_case(name);
+    let joint = named(&|it| it == name).or_else(|| named(&|it| snake_case(it) == snake))?;
+    Some(UrdfJoint {
+        name: joint.name.clone(),
+        slides: joint.kind == JointType::Prismatic,
+        limits: joint.limits,
+    })
+}
+
 /// Whether a robot has meshes that are not part of the program.
 fn names_files(model: &RobotModel) -> bool {
     let mut shapes = model
@@ -94,4 +115,86 @@ fn names_files(model: &RobotModel) -> bool {
         .iter()
         .flat_map(|link| link.visuals.iter().chain(&link.collisions));
     shapes.any(|shape| matches!(shape.geometry, Geometry::Mesh { .. }) && !is_ours(shape))
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::DVec3;
+    use tabletop_core::{JointName, LimbId};
+    use tabletop_geometry::Pose;
+
+    use super::*;
+
+    const PANDA: &str = include_str!("../../../assets/panda/panda.urdf");
+    const LAYOUT: &str = include_str!("../../../assets/panda/robot.ron");
+
+    fn read(urdf: &str, layout: &str) -> Result<Description, DescriptionError> {
+        Description::read(DescriptionSource {
+            path: "arm/panda.urdf".into(),
+            urdf: urdf.to_owned(),
+            layout: Some(layout.to_owned()),
+            reach: None,
+        })
+    }
+
+    #[test]
+    fn names_with_capitals_are_found() {
+        let urdf = PANDA.replace("panda_joint", "Actuator");
+        for layout in ["Actuator", "actuator"] {
+            let layout = LAYOUT.replace("panda_joint", layout);
+            let robot = read(&urdf, &layout).unwrap();
+            let first = &robot.layout.joints[0];
+            assert_eq!(first.urdf_name, "Actuator1");
+            assert_eq!(first.name, JointName::new("Actuator1").unwrap());
+        }
+    }
+
+    #[test]
+    fn an_exact_name_comes_before_one_in_snake_case() {
+        let urdf = PANDA
+            .replace("panda_joint1", "joint_a")
+            .replace("panda_joint2", "JointA");
+        let joint = |name| {
+            urdf_joint(&RobotModel::from_urdf(&urdf).unwrap(), name)
+                .unwrap()
+                .name
+        };
+        assert_eq!(joint("JointA"), "JointA");
+        assert_eq!(joint("joint_a"), "joint_a");
+    }
+
+    #[test]
+    fn an_arm_may_begin_with_a_lift() {
+        let turn = "<joint name=\"panda_joint1\" type=\"revolute\">";
+        assert!(PANDA.contains(turn));
+        let urdf = PANDA.replace(turn, &turn.replace("revolute", "prismatic"));
+        let robot = read(&urdf, LAYOUT).unwrap();
+        assert!(robot.layout.joints[0].slides && !robot.layout.joints[1].slides);
+        let articulation = Articulation::new(robot.model, robot.layout).unwrap();
+        let home: Vec<_> = articulation
+            .layout
+            .joints
+            .iter()
+            .map(|joint| joint.home)
+            .collect();
+        let mut up = home.clone();
+        up[0] += 0.1;
+        let base = Pose::at(bevy::math::Vec3::ZERO);
+        let [low, high] = [home, up].map(|positions| articulation.posture(&positions, base));
+        let rise = high.end_effectors()[0].location - low.end_effectors()[0].location;
+        assert!((rise.z - 1.0).abs() < 1e-5, "0.1 m is a unit: {rise}");
+        let [first, ..] = &articulation.axes(LimbId(0), &low)[..] else {
+            panic!("no axes")
+        };
+        assert_eq!(first.motion_of(DVec3::new(1.0, 2.0, 3.0)), DVec3::Z);
+    }
+
+    #[test]
+    fn a_fault_of_the_urdf_names_its_file_and_line() {
+        let urdf = PANDA.replace("<mass value=\"2.2\"/>", "<mass value=\"-1\"/>");
+        let error = read(&urdf, LAYOUT).unwrap_err().to_string();
+        assert!(error.starts_with("arm/panda.urdf: line "), "{error}");
+        let error = read(PANDA, &LAYOUT.replace("panda_joint7", "joint7")).unwrap_err();
+        assert!(!error.to_string().contains("panda.urdf"), "{error}");
+    }
 }

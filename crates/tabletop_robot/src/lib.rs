@@ -10,6 +10,7 @@ mod articulation;
 mod description;
 mod hand_cameras;
 pub mod look;
+mod motor_gap;
 mod plugin;
 mod reach;
 mod source;
@@ -19,10 +20,14 @@ pub use articulation::{
         FRICTION, LinkEntities, RobotLink, base, enable, make_passive, positions, spawn, teleport,
     },
     passive_links::PassiveLinks,
-    tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition, in_meters, in_units},
+    tree::{
+        Articulation, Body, Carrier, JointAxis, Positions, Posture, TreePosition, in_meters,
+        in_units,
+    },
 };
 pub use description::{Description, DescriptionError};
 pub use hand_cameras::HandCameraCarrier;
+pub use motor_gap::{MotorGap, MotorGapKind};
 pub use plugin::RobotPlugin;
 pub use reach::{end_effector_at, reach, reach_nearby};
 pub use source::DescriptionSource;

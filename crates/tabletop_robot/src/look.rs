@@ -14,9 +14,9 @@ mod hull;
 mod lathe;
 pub(crate) mod link_figures;
 mod loft;
+mod mesh_path;
 pub(crate) mod meshes;
 mod palette;
-
 mod shape_file;
 pub(crate) mod shared_figures;
 mod shipped;

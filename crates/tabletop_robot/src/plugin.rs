@@ -52,6 +52,11 @@ impl Plugin for RobotPlugin {
         for (link, error) in articulation.add_meshes(description.source.as_ref()) {
             warn!("link {link} has no collision shape where this mesh would be: {error}");
         }
+        if self.mode == RobotMode::Dynamic {
+            for gap in articulation.motor_gaps() {
+                warn!("the robot cannot move by its motors as it should: {gap}");
+            }
+        }
         let layout = description.layout.clone();
         app.register_type::<RobotLink>()
             .insert_resource(HandCameras(articulation.hand_cameras.clone().into()))

@@ -28,6 +28,10 @@ enum RobotFault {
 
 impl fmt::Display for RobotFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let RobotFault::Description(error @ DescriptionError::Urdf { .. }) = &self.fault {
+            // It names the URDF, not the `robot.ron` beside it.
+            return error.fmt(f);
+        }
         write!(f, "{}: ", self.path.display())?;
         match &self.fault {
             RobotFault::Unreadable(error) => error.fmt(f),

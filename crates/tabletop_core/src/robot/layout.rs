@@ -9,7 +9,10 @@ use tabletop_geometry::{Pose, UNITS_PER_METER};
 
 use crate::{
     HandCamera, Table,
-    robot::name::{JointName, LimbName},
+    robot::{
+        MANUAL_SPEED,
+        name::{JointName, LimbName},
+    },
 };
 
 /// A joint of the robot, by its place in [`RobotLayout::joints`].
@@ -65,21 +68,25 @@ pub struct RobotLayout {
 /// A joint of the robot, or the opening of a gripper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointLayout {
-    /// Its name in files, commands and, but for openings, in the URDF.
+    /// Its name in files and commands.
     pub name: JointName,
+    /// Its name in the URDF, letter by letter; that of an opening is not there.
+    pub urdf_name: String,
     /// Its name on the screen, beside that of its limb: `E1`.
     pub label: String,
     /// The part that it moves.
     pub role: JointRole,
-    /// Least and greatest position, in rad; in units for a gripper's opening.
+    /// True if it slides instead of turning: its positions are then in m, its motor pulls in N.
+    pub slides: bool,
+    /// Least and greatest position, in rad or m; in units for a gripper's opening.
     pub limits: [f64; 2],
     /// Position when the program starts.
     pub home: f64,
     /// 1, or -1 for a joint that manual control turns the other way, so that the limbs move as mirror images.
     pub sign: f64,
-    /// Largest torque of its motor, in N m, if the URDF gives none.
+    /// Largest torque of its motor, in N m or N, if the URDF gives none.
     pub effort: f64,
-    /// Largest speed of its motor, in rad/s, if the URDF gives none.
+    /// Largest speed of its motor, in rad/s or m/s, if the URDF gives none.
     pub speed: f64,
     /// The key that moves it up and the one that moves it down unless the user binds others, as `robot.ron` names them.
     pub keys: [Option<String>; 2],
@@ -89,6 +96,14 @@ impl JointLayout {
     /// The value nearest to this one that is within the limits.
     pub const fn clamp(&self, value: f64) -> f64 {
         value.clamp(self.limits[0], self.limits[1])
+    }
+
+    /// Its speed in manual control, in rad/s; 1 unit/s for what slides: in m/s for a joint, in units/s for a gripper's opening.
+    pub fn manual_speed(&self) -> f64 {
+        match self.slides {
+            true => MANUAL_SPEED / UNITS_PER_METER,
+            false => MANUAL_SPEED,
+        }
     }
 
     /// True if it is the opening of a gripper, in units, and not an angle.

@@ -1,6 +1,6 @@
 //! The file `robot.ron`: the properties of a robot that its URDF does not give.
 
-use std::fmt;
+use std::{f64::consts::TAU, fmt};
 
 use bevy::prelude::*;
 use ron::{Options, error::SpannedError, extensions::Extensions};
@@ -90,6 +90,20 @@ struct GripperEntry {
     close_key: Option<String>,
 }
 
+/// A joint as the URDF has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UrdfJoint {
+    /// Its name there.
+    pub name: String,
+    /// True if it slides instead of turning.
+    pub slides: bool,
+    /// Least and greatest position, in rad or m; infinite if nothing limits it.
+    pub limits: [f64; 2],
+}
+
+/// How far a joint that nothing limits turns either way, in rad, unless the file says otherwise: as far as the cables of many arms.
+const ENDLESS_TURN: f64 = 2.0 * TAU;
+
 const fn forward() -> f64 {
     1.0
 }
@@ -120,24 +134,24 @@ impl LayoutFile {
         Ok(options.from_str(text).map_err(Box::new)?)
     }
 
-    /// The layout. `limits` gives the limits of the URDF's joints, which count where the file has none.
+    /// The layout. `in_urdf` finds the joint that the URDF has for a name; its limits count where the file has none.
     ///
     /// # Errors
     ///
     /// The content makes no sense; the error names the place.
     pub fn layout(
         &self,
-        limits: impl Fn(&str) -> Option<[f64; 2]>,
+        in_urdf: impl Fn(&str) -> Option<UrdfJoint>,
     ) -> Result<RobotLayout, LayoutError> {
         let mut joints = Vec::new();
         for (i, limb) in self.limbs.iter().enumerate() {
             for (place, joint) in limb.joints.iter().enumerate() {
                 let limb = LimbId(i as u8);
-                joints.push(joint.layout(JointRole::Limb { limb, place }, &limits)?);
+                joints.push(joint.layout(JointRole::Limb { limb, place }, &in_urdf)?);
             }
         }
         let neck = self.neck.as_ref().map(|neck| {
-            joints.push(neck.layout(JointRole::Neck, &limits)?);
+            joints.push(neck.layout(JointRole::Neck, &in_urdf)?);
             Ok::<_, LayoutError>(JointId(joints.len() as u16 - 1))
         });
         let neck = neck.transpose()?;
@@ -221,14 +235,19 @@ impl JointEntry {
     fn layout(
         &self,
         role: JointRole,
-        limits: impl Fn(&str) -> Option<[f64; 2]>,
+        in_urdf: impl Fn(&str) -> Option<UrdfJoint>,
     ) -> Result<JointLayout, LayoutError> {
         let Self { name, home, .. } = self;
-        let limits = self.limits.or_else(|| limits(name)).ok_or_else(|| {
-            fault(format!(
-                "joint {name}: neither this file nor the URDF gives its limits"
-            ))
-        })?;
+        let found = in_urdf(name);
+        let limits = match (self.limits, &found) {
+            (Some(limits), _) => limits,
+            (None, Some(found)) => found.own_limits()?,
+            (None, None) => {
+                return Err(fault(format!(
+                    "joint {name}: neither this file nor the URDF gives its limits"
+                )));
+            }
+        };
         check_limits(name, limits, *home)?;
         if self.sign.abs() != 1.0 {
             return Err(fault(format!("joint {name}: its sign is neither 1 nor -1")));
@@ -237,6 +256,8 @@ impl JointEntry {
         Ok(JointLayout {
             name: JointName::new(name).map_err(|error| fault(format!("joint {name}: {error}")))?,
             label: self.label.clone(),
+            slides: found.as_ref().is_some_and(|found| found.slides),
+            urdf_name: found.map_or_else(|| name.clone(), |found| found.name),
             role,
             limits,
             home: *home,
@@ -245,6 +266,19 @@ impl JointEntry {
             speed: self.speed,
             keys: [self.key.clone(), back],
         })
+    }
+}
+
+impl UrdfJoint {
+    fn own_limits(&self) -> Result<[f64; 2], LayoutError> {
+        let Self { name, limits, .. } = self;
+        match *limits {
+            [least, largest] if least == largest => Err(fault(format!(
+                "joint {name}: the URDF lets it move from {least} to {largest} only: give it `limits` here"
+            ))),
+            [f64::NEG_INFINITY, f64::INFINITY] if !self.slides => Ok([-ENDLESS_TURN, ENDLESS_TURN]),
+            limits => Ok(limits),
+        }
     }
 }
 
@@ -267,6 +301,8 @@ impl GripperEntry {
         Ok(JointLayout {
             name: JointName::new(name)
                 .map_err(|error| fault(format!("gripper {name}: {error}")))?,
+            urdf_name: name.clone(),
+            slides: false,
             label: "gripper".to_owned(),
             role: JointRole::Gripper(limb),
             limits: *opening,
@@ -307,7 +343,7 @@ fn check_hand_cameras(cameras: &[HandCameraLayout]) -> Result<(), LayoutError> {
 fn check_limits(joint: &str, [least, largest]: [f64; 2], home: f64) -> Result<(), LayoutError> {
     if !(least.is_finite() && largest.is_finite() && least <= largest) {
         return Err(fault(format!(
-            "joint {joint}: it cannot go from {least} to {largest}"
+            "joint {joint}: it cannot go from {least} to {largest}; expected two finite `limits`, the least first"
         )));
     }
     if !(least..=largest).contains(&home) {
@@ -337,8 +373,61 @@ mod tests {
             "joint left_s0: neither this file nor the URDF gives its limits"
         );
         let file = LayoutFile::read(&text).unwrap();
-        let layout = file.layout(|joint| (joint == "left_s0").then_some([-1.0, 0.5]));
+        let layout = file.layout(|joint| (joint == "left_s0").then(|| joint_with([-1.0, 0.5])));
         assert_eq!(layout.unwrap().joints[0].limits, [-1.0, 0.5]);
+    }
+
+    fn joint_with(limits: [f64; 2]) -> UrdfJoint {
+        UrdfJoint {
+            name: "LeftS0".to_owned(),
+            slides: false,
+            limits,
+        }
+    }
+
+    #[test]
+    fn a_joint_that_nothing_limits_makes_two_turns() {
+        let endless = |_: &str| Some(joint_with([f64::NEG_INFINITY, f64::INFINITY]));
+        let layout = LayoutFile::read(TEXT).unwrap().layout(endless).unwrap();
+        assert_eq!(layout.joints[0].limits, [-1.7, 1.7], "the file's count");
+        let text = TEXT.replacen("limits: (-1.7, 1.7), ", "", 1);
+        let layout = LayoutFile::read(&text).unwrap().layout(endless).unwrap();
+        let [least, largest] = layout.joints[0].limits;
+        assert!((largest.to_degrees() - 720.0).abs() < 1e-9 && least == -largest);
+    }
+
+    #[test]
+    fn a_joint_that_the_urdf_does_not_let_move_is_refused() {
+        let text = TEXT.replacen("limits: (-1.7, 1.7), ", "", 1);
+        let file = LayoutFile::read(&text).unwrap();
+        let error = file.layout(|_| Some(joint_with([0.0; 2]))).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "joint LeftS0: the URDF lets it move from 0 to 0 only: give it `limits` here"
+        );
+    }
+
+    #[test]
+    fn a_joint_keeps_the_name_and_the_motion_of_the_urdf() {
+        let file = LayoutFile::read(TEXT).unwrap();
+        let sliding = |joint: &str| {
+            (joint == "left_s0").then(|| UrdfJoint {
+                slides: true,
+                ..joint_with([0.0, 0.4])
+            })
+        };
+        let layout = file.layout(sliding).unwrap();
+        let [first, second, ..] = &layout.joints[..] else {
+            panic!("no joints")
+        };
+        assert_eq!(
+            (first.name.as_str(), &*first.urdf_name),
+            ("left_s0", "LeftS0")
+        );
+        assert_eq!(second.urdf_name, "left_s1");
+        assert!(first.slides && !second.slides);
+        assert_eq!(first.manual_speed(), 0.1, "a unit per second");
+        assert_eq!(second.manual_speed(), 1.0);
     }
 
     #[test]

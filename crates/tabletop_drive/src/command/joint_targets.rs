@@ -1,7 +1,7 @@
 //! Targets of the joints.
 
 use bevy::prelude::*;
-use tabletop_core::{Drive, JointId, JointRole, LimbId, MANUAL_SPEED, RobotLayout, TICK_SECONDS};
+use tabletop_core::{Drive, JointId, JointRole, LimbId, RobotLayout, TICK_SECONDS};
 
 /// Targets of the joints, for this tick and later ones.
 #[derive(Resource, Clone, Debug)]
@@ -174,7 +174,7 @@ impl JointTargets {
             Some(Drive::Position(there)) => return Setpoint::Jump(limited.clamp(there)),
             _ => match (self.toward[joint.index()], self.rush[joint.index()]) {
                 (_, Some(there)) => return Setpoint::Jump(there),
-                (Some(there), _) => toward(position, there, MANUAL_SPEED),
+                (Some(there), _) => toward(position, there, limited.manual_speed()),
                 (None, None) => 0.0,
             },
         };
@@ -194,9 +194,12 @@ impl JointTargets {
                 .map(|(joint, angle)| self.setpoint(layout, *joint, *angle))
                 .collect();
         };
-        let ways = goal.iter().zip(angles).map(|(goal, angle)| goal - angle);
-        let farthest = ways.map(f64::abs).fold(0.0, f64::max);
-        let ticks = (farthest / (MANUAL_SPEED * f64::from(TICK_SECONDS))).ceil();
+        let joints = layout.limb(limb).joints.iter();
+        let ways = joints.zip(goal.iter().zip(angles));
+        let times = ways.map(|(joint, (goal, angle))| {
+            (goal - angle).abs() / (layout.joint(*joint).manual_speed() * f64::from(TICK_SECONDS))
+        });
+        let ticks = times.fold(0.0, f64::max).ceil();
         let joints = goal.iter().zip(angles);
         joints
             .map(|(goal, angle)| {

@@ -3,10 +3,7 @@
 //! For physics, the robot's bodies go where they are sent through any obstacle, and pushed objects get their speed at once. So the
 //! effort of a push must be known before the arm moves, not after.
 
-use bevy::{
-    math::{DAffine3, DVec3},
-    prelude::*,
-};
+use bevy::{math::DAffine3, prelude::*};
 use bevy_rapier3d::{
     parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier,
 };
@@ -14,7 +11,7 @@ use tabletop_core::{LimbId, TICK_SECONDS};
 use tabletop_geometry::UNITS_PER_METER;
 use tabletop_physics::{FreeObject, impulse_share, limits::TOUCHING};
 
-use tabletop_robot::{FRICTION, TreePosition, in_meters};
+use tabletop_robot::{FRICTION, JointAxis, TreePosition, in_meters};
 
 use crate::{
     dynamics::impulse::ContactLoad, dynamics::impulse::FrictionAxis, dynamics::matrix::Joints,
@@ -98,9 +95,9 @@ pub(crate) fn contact_loads(
     touches
 }
 
-/// Speed of a point along a direction per rad/s of each joint, in m. `joints` carry the point.
+/// Speed of a point along a direction per rad/s (m/s) of each joint, in m. `joints` carry the point.
 fn lever(
-    axes: &[(DVec3, DVec3)],
+    axes: &[JointAxis],
     carriers: usize,
     to_robot: DAffine3,
     point: Vec3,
@@ -108,12 +105,9 @@ fn lever(
 ) -> Joints {
     let point = to_robot.transform_point3(point.as_dvec3() / UNITS_PER_METER);
     let direction = to_robot.transform_vector3(direction.as_dvec3());
-    each(axes.len(), |i| {
-        let (origin, axis) = axes[i];
-        match i < carriers {
-            true => axis.cross(point - origin).dot(direction),
-            false => 0.0,
-        }
+    each(axes.len(), |i| match i < carriers {
+        true => axes[i].motion_of(point).dot(direction),
+        false => 0.0,
     })
 }
 

@@ -110,10 +110,9 @@ impl Motors {
             let inertia = each_pair(joints.len(), |i, j| inertia[(joints[i], joints[j])]);
             let axes = articulation.axes(limb, &motion.scratch);
             let weights = each(joints.len(), |i| {
-                let (origin, axis) = axes[i];
                 let of_load = |load: &Load| {
-                    let arm = frames[load.link].transform_point3(load.point) - origin;
-                    -axis.dot(arm.cross(down * load.mass))
+                    let point = frames[load.link].transform_point3(load.point);
+                    -axes[i].motion_of(point).dot(down * load.mass)
                 };
                 loads[limb.index()].iter().map(of_load).sum()
             });

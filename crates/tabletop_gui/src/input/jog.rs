@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Actor, CommandWriter, Drive, JointId, JointName, MANUAL_SPEED, OrderSystems, Paused,
-    RestApp as _, RestingSystems, RobotCommand, RobotLayout, SimSystems,
+    Actor, CommandWriter, Drive, JointId, JointName, OrderSystems, Paused, RestApp as _,
+    RestingSystems, RobotCommand, RobotLayout, SimSystems,
 };
 
 /// The directions in which the joints are to go: 1 and -1 are the directions of manual control, 0 is to stay.
@@ -102,7 +102,7 @@ impl Jog {
             .filter_map(|id| {
                 let joint = layout.joint(id);
                 let direction = self.keys.direction(id) + self.buttons.direction(id);
-                let velocity = MANUAL_SPEED * joint.sign * f64::from(direction.signum());
+                let velocity = joint.manual_speed() * joint.sign * f64::from(direction.signum());
                 (direction != 0).then_some((joint.name, Drive::Velocity(velocity)))
             })
             .collect()

@@ -93,6 +93,24 @@ struct Limb {
     trackers: Vec<LinkId>,
 }
 
+/// The line about which a joint turns, or along which it slides.
+#[derive(Clone, Copy, Debug)]
+pub struct JointAxis {
+    origin: DVec3,
+    direction: DVec3,
+    turns: bool,
+}
+
+impl JointAxis {
+    /// The motion of a point that the joint carries, in m per rad or m of the joint.
+    pub fn motion_of(&self, point: DVec3) -> DVec3 {
+        match self.turns {
+            true => self.direction.cross(point - self.origin),
+            false => self.direction,
+        }
+    }
+}
+
 /// The posture of the robot: the frames of its links and the poses of its bodies.
 #[derive(Clone, Debug)]
 pub struct Posture {
@@ -130,8 +148,8 @@ impl Articulation {
     /// Finds the joints and links of a layout in a model.
     pub fn new(model: RobotModel, layout: RobotLayout) -> Result<Self, ModelError> {
         let joints = layout.joints.iter().map(|joint| match joint.role {
-            JointRole::Limb { .. } => model.find_joint(joint.name.as_str()).map(Some),
-            JointRole::Neck => Ok(model.find_joint(joint.name.as_str()).ok()),
+            JointRole::Limb { .. } => model.find_joint(&joint.urdf_name).map(Some),
+            JointRole::Neck => Ok(model.find_joint(&joint.urdf_name).ok()),
             JointRole::Gripper(_) => Ok(None),
         });
         let joints = joints.collect::<Result<Vec<_>, _>>()?;
@@ -340,14 +358,18 @@ impl Articulation {
         )
     }
 
-    /// The axes of a limb's joints: a point and a unit vector, in m in the torso's frame.
-    pub fn axes(&self, limb: LimbId, posture: &Posture) -> Vec<(DVec3, DVec3)> {
+    /// The axes of a limb's joints, in m in the torso's frame.
+    pub fn axes(&self, limb: LimbId, posture: &Posture) -> Vec<JointAxis> {
         let joints = self.limbs[limb.index()].chain.joints().iter();
         joints
             .map(|&joint| {
                 let joint = self.model.joint(joint);
                 let frame = posture.frames()[joint.child];
-                (frame.translation, frame.transform_vector3(joint.axis))
+                JointAxis {
+                    origin: frame.translation,
+                    direction: frame.transform_vector3(joint.axis),
+                    turns: joint.kind.turns(),
+                }
             })
             .collect()
     }
@@ -380,12 +402,12 @@ impl Limb {
         let end_effector = frame_on(model, &limb.end_effector)?;
         let limits = limb.joints.iter().map(|&joint| layout.joint(joint).limits);
         let trackers = limb.trackers.iter().map(|&joint| {
-            let joint = model.find_joint(layout.joint(joint).name.as_str())?;
+            let joint = model.find_joint(&layout.joint(joint).urdf_name)?;
             Ok(model.joint(joint).child)
         });
         let chain = ArmChain::new(model, model.root(), end_effector.0)?;
         for (i, &joint) in limb.joints.iter().enumerate() {
-            let found = model.find_joint(layout.joint(joint).name.as_str())?;
+            let found = model.find_joint(&layout.joint(joint).urdf_name)?;
             if chain.joints().get(i) != Some(&found) || chain.joints().len() != limb.joints.len() {
                 return Err(ModelError::NoArm {
                     base: model.link(model.root()).name.clone(),

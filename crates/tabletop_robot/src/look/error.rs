@@ -9,7 +9,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum LookError {
     /// The file that the robot's description names does not exist.
-    #[error("{file}: there is no such file; it was looked for in {}", list(.searched))]
+    #[error("{file}: there is no such file; it was looked for as {}", list(.searched))]
     Missing {
         /// The file, as the description names it.
         file: String,
@@ -48,7 +48,7 @@ pub enum LookError {
 
 fn list(paths: &[PathBuf]) -> String {
     if paths.is_empty() {
-        return "no folder, because the description of the robot is not in a file".into();
+        return "no file, because the description of the robot is not in a file".into();
     }
     let names: Vec<_> = paths
         .iter()

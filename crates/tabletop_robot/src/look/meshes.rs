@@ -1,10 +1,6 @@
 //! Meshes that descriptions of robots name.
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{io, sync::Arc};
 
 use bevy::math::Vec3;
 use tabletop_core::Figure;
@@ -13,7 +9,9 @@ use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 use tabletop_storage::{Symlinks, read_regular_file, read_regular_text};
 
-use super::{error::LookError, hull::Hull, shape_file::read_shape, shipped::PARTS};
+use super::{
+    error::LookError, hull::Hull, mesh_path::find, shape_file::read_shape, shipped::PARTS,
+};
 use crate::source::DescriptionSource;
 
 /// Prefix of the names of the program's own shapes.
@@ -120,47 +118,9 @@ fn simplified(hull: &Hull) -> Hull {
     hull.simplified(longest / COARSE_CELLS)
 }
 
-/// The file that a description names: `package://NAME/rest` is looked for as `NAME/rest` and, where the folder is called
-/// NAME itself, as `rest`, in the folders around the description from the inside out; other names are relative to it.
-fn find(file: &str, source: Option<&DescriptionSource>) -> Result<PathBuf, LookError> {
-    let folder = source.map(DescriptionSource::folder);
-    let mut searched = Vec::new();
-    let candidates: Vec<PathBuf> = if let Some(rest) = file.strip_prefix("package://") {
-        let (package, inside) = rest.split_once('/').unwrap_or((rest, ""));
-        let around = folder.into_iter().flat_map(Path::ancestors);
-        around
-            .flat_map(|folder| {
-                let is_package = folder.file_name().is_some_and(|name| name == package);
-                let own = is_package.then(|| folder.join(inside));
-                own.into_iter().chain([folder.join(package).join(inside)])
-            })
-            .collect()
-    } else {
-        let path = Path::new(file.strip_prefix("file://").unwrap_or(file));
-        match folder {
-            Some(folder) => vec![folder.join(path)],
-            None if path.is_absolute() => vec![path.to_owned()],
-            None => Vec::new(),
-        }
-    };
-    for path in candidates {
-        if path.is_file() {
-            return match source.is_none_or(|source| source.reaches(&path)) {
-                true => Ok(path),
-                false => Err(LookError::Outside { path }),
-            };
-        }
-        searched.push(path);
-    }
-    Err(LookError::Missing {
-        file: file.to_owned(),
-        searched,
-    })
-}
-
 #[cfg(test)]
 mod tests {
-    use std::fs;
+    use std::{fs, path::PathBuf};
 
     use tabletop_core::Reach;
 
