@@ -130,8 +130,8 @@ impl ArmChain {
     }
 
     /// The joints.
-    pub fn joints(&self) -> &[ModelJointId] {
-        &self.joints
+    pub const fn joints(&self) -> &[ModelJointId] {
+        self.joints.as_slice()
     }
 
     /// Least and largest angle of each joint, in rad (m).

@@ -221,6 +221,44 @@ fn an_arm_on_a_lift_has_the_frames_of_its_model() {
     }
 }
 
+/// Two links that turn about verticals, a quill, and a wrist.
+const SCARA: &str = r#"<robot name="scara">
+    <link name="0"/> <link name="1"/> <link name="2"/> <link name="3"/> <link name="4"/>
+    <joint name="a" type="revolute"><parent link="0"/><child link="1"/><origin xyz="0 0 0.4"/>
+        <axis xyz="0 0 1"/><limit lower="-2.4" upper="2.4" velocity="1"/></joint>
+    <joint name="b" type="revolute"><parent link="1"/><child link="2"/><origin xyz="0.3 0 0"/>
+        <axis xyz="0 0 1"/><limit lower="-2.4" upper="2.4" velocity="1"/></joint>
+    <joint name="c" type="prismatic"><parent link="2"/><child link="3"/><origin xyz="0.3 0 0"/>
+        <axis xyz="0 0 -1"/><limit lower="0" upper="0.3" velocity="1"/></joint>
+    <joint name="d" type="revolute"><parent link="3"/><child link="4"/>
+        <axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="1"/></joint>
+</robot>"#;
+
+#[test]
+fn a_scara_reaches_poses_of_seven_digits() {
+    let robot = RobotModel::from_urdf(SCARA).unwrap();
+    let arm = ArmChain::between(&robot, "0", "4").unwrap();
+    let mut state = 21;
+    for i in 0..200 {
+        let pose = arm.tip(&random_angles(&arm, &mut state));
+        let rotation = DQuat::from_mat3(&pose.matrix3).as_quat().as_dquat();
+        let location = pose.translation.as_vec3().as_dvec3();
+        let rounded = DAffine3::from_rotation_translation(rotation.normalize(), location);
+        let target = Target::Pose(rounded);
+        match arm.solve(&target, &[0.1, 0.5, 0.1, 0.0]) {
+            Ok(angles) => assert_solves(&arm, &target, &angles),
+            Err(error) => panic!("{i}: {error}"),
+        }
+        let leaning = rounded * DAffine3::from_rotation_x(0.01);
+        assert!(
+            arm.solve_from(&Target::Pose(leaning), &[0.0; 4], 1)
+                .is_err()
+        );
+        let tilted = rounded * DAffine3::from_rotation_x(4e-6);
+        assert!(arm.solve(&Target::Pose(tilted), &[0.0; 4]).is_ok());
+    }
+}
+
 proptest! {
     #[test]
     fn the_jacobian_is_the_derivative_of_the_tip(

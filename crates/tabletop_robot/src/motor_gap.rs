@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(gaps(PANDA, LAYOUT), [""; 0]);
         let baxter = Articulation::new(
             tabletop_kinematics::baxter().unwrap(),
-            RobotLayout::baxter(),
+            RobotLayout::baxter().clone(),
         );
         assert_eq!(baxter.unwrap().motor_gaps(), []);
     }

@@ -78,11 +78,22 @@ fn near(name: &str, source: Option<&DescriptionSource>) -> Vec<PathBuf> {
     };
     let around = around(source).into_iter();
     around
-        .flat_map(|folder| {
-            let own = is_package(&folder, package).then(|| folder.join(inside));
-            own.into_iter().chain([folder.join(package).join(inside)])
-        })
+        .flat_map(|folder| in_folder(&folder, package, inside, source))
         .collect()
+}
+
+/// The places of a package's file if the package is this folder or is in it.
+fn in_folder(
+    folder: &Path,
+    package: &str,
+    inside: &str,
+    source: Option<&DescriptionSource>,
+) -> impl Iterator<Item = PathBuf> + use<> {
+    let is_called = folder.file_name().is_some_and(|name| name == package);
+    let is_it = is_called
+        || source.is_some_and(|source| source.reaches(folder)) && is_named(folder, package);
+    let own = is_it.then(|| folder.join(inside));
+    own.into_iter().chain([folder.join(package).join(inside)])
 }
 
 /// The places of a package in the folders beside the description's and beside those around it.
@@ -90,18 +101,16 @@ fn in_siblings<'a>(
     name: &'a str,
     source: Option<&'a DescriptionSource>,
 ) -> impl Iterator<Item = PathBuf> + 'a {
-    let around = source.map(|_| around(source)).unwrap_or_default();
+    let package = in_package(name);
+    let around = package.map(|_| around(source)).unwrap_or_default();
     let around = around.into_iter().take(WORKSPACE_DEPTH);
     let reached = move |folder: &PathBuf| source.is_some_and(|source| source.reaches(folder));
     let siblings = around
         .flat_map(|folder| folders_in(&folder))
         .filter(reached);
     siblings
-        .filter_map(move |folder| Some((folder, in_package(name)?)))
-        .flat_map(|(folder, (package, inside))| {
-            let own = is_package(&folder, package).then(|| folder.join(inside));
-            own.into_iter().chain([folder.join(package).join(inside)])
-        })
+        .filter_map(move |folder| Some((folder, package?)))
+        .flat_map(move |(folder, (package, inside))| in_folder(&folder, package, inside, source))
 }
 
 /// The folder of the description and those above it, from the inside out.
@@ -125,15 +134,16 @@ fn folders_in(folder: &Path) -> Vec<PathBuf> {
     folders
 }
 
-/// True if a folder, or the `package.xml` in it, is called this.
-fn is_package(folder: &Path, package: &str) -> bool {
-    let manifest = || {
-        let path = folder.join("package.xml");
-        let text = read_regular_text(&path, MOST_MANIFEST_BYTES, Symlinks::Followed).ok()?;
-        let (_, rest) = text.split_once("<name>")?;
-        Some(rest.split_once("</name>")?.0.trim() == package)
-    };
-    folder.file_name().is_some_and(|name| name == package) || manifest().unwrap_or(false)
+/// True if the `package.xml` in a folder has this name.
+fn is_named(folder: &Path, package: &str) -> bool {
+    let manifest = folder.join("package.xml");
+    let text = read_regular_text(&manifest, MOST_MANIFEST_BYTES, Symlinks::Followed);
+    text.is_ok_and(|text| {
+        let name = text
+            .split_once("<name>")
+            .map(|(_, rest)| rest.split("</name>"));
+        name.and_then(|mut name| name.next()).map(str::trim) == Some(package)
+    })
 }
 
 /// A text with the characters that `%20` and the like stand for; what is no UTF-8 then stays as it is.
