@@ -35,7 +35,7 @@ pub enum DescriptionError {
         /// The URDF.
         path: PathBuf,
         /// The fault, with its line.
-        error: ModelError,
+        error: Box<ModelError>,
     },
     /// Its URDF lacks a name of the `robot.ron`.
     #[error(transparent)]
@@ -61,7 +61,7 @@ impl Description {
         let model =
             RobotModel::from_urdf(&source.urdf).map_err(|error| DescriptionError::Urdf {
                 path: source.path.clone(),
-                error,
+                error: Box::new(error),
             })?;
         let folder = source.folder();
         let is_there = !is_shipped(&source.path) && folder.is_dir();
