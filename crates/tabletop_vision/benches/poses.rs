@@ -16,6 +16,8 @@ use tabletop_vision::{Eyes, KnownScenery};
 
 /// Number of pictures in which an object is followed.
 const FRAMES: u32 = 40;
+/// The least part of an object that is visible of which the pose counts.
+const VISIBLE: f32 = 0.1;
 /// Number of looks at each picture.
 const REPEATED: usize = 2;
 
@@ -118,6 +120,12 @@ fn main() {
                     errors.push(error);
                 }
             }
+            // What is hidden cannot be known.
+            let silent = errors
+                .iter()
+                .filter(|error| error.length > 0.1 && error.is_sure);
+            let silent = silent.count();
+            errors.retain(|error| error.visible > VISIBLE);
             let part = |mut of: Vec<f32>, part: f32| {
                 of.sort_by(f32::total_cmp);
                 of[((of.len() - 1) as f32 * part).round() as usize]
@@ -125,7 +133,6 @@ fn main() {
             let lengths: Vec<_> = errors.iter().map(|error| error.length).collect();
             let degrees = errors.iter().map(|error| error.degrees).collect();
             let wrong = errors.iter().filter(|error| error.length > 0.1);
-            let silent = wrong.clone().filter(|error| error.is_sure).count();
             let doubted = errors
                 .iter()
                 .filter(|error| error.length <= 0.02 && !error.is_sure)

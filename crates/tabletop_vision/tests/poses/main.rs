@@ -25,6 +25,10 @@ fn objects_of_every_task_are_seen_to_a_fiftieth_of_a_unit() {
                 let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
                 let seen = eyes.look(&sample.picture, &KnownScenery::default());
                 for (object, error) in sample.errors(&seen).into_iter().enumerate() {
+                    // What is hidden cannot be known.
+                    if error.visible < 0.1 {
+                        continue;
+                    }
                     assert!(
                         error.length < 0.02 && error.degrees < 1.0 && error.is_sure,
                         "{} {is_end} {seed}, object {object}: {error:?}",
@@ -169,7 +173,7 @@ fn a_hidden_object_stays_where_it_was_last_seen() {
         color: Rgb::new(0.9, 0.6, 0.9),
         object: 9,
     };
-    let picture = sample.with_poses_and(&sample.poses, &[board.clone()]);
+    let picture = sample.with_poses_and(&sample.poses, std::slice::from_ref(&board));
     let scenery = KnownScenery {
         solids: vec![board],
         ..KnownScenery::default()

@@ -105,6 +105,8 @@ pub struct Sample {
     pub table: Table,
     pub camera: Camera,
     pub picture: Picture,
+    /// The part of each object's pixels that others leave visible.
+    pub visible: Vec<f32>,
     shapes: Vec<Shape>,
 }
 
@@ -144,6 +146,18 @@ impl TaskScene {
         }
         let mut picture = Picture::default();
         Rasterizer::alone().draw(&scene, &camera, &mut picture);
+        let shown = |picture: &Picture, number: u32| {
+            let pixels = picture.objects.iter().filter(|own| **own == number);
+            pixels.count() as f32
+        };
+        let visible = (2..count as u32 + 2).map(|number| {
+            let mut alone = scene.clone();
+            alone.solids.retain(|solid| solid.object == number);
+            let mut whole = Picture::default();
+            Rasterizer::alone().draw(&alone, &camera, &mut whole);
+            shown(&picture, number) / shown(&whole, number).max(1.0)
+        });
+        let visible = visible.collect();
         if difficulty.noise > 0.0 {
             for part in &mut picture.rgb {
                 *part = (f32::from(*part) + difficulty.noise * normal(&mut random))
@@ -180,6 +194,7 @@ impl TaskScene {
             table,
             camera,
             picture,
+            visible,
             shapes: objects.iter().map(|object| object.shape.clone()).collect(),
         }
     }
@@ -349,6 +364,8 @@ pub struct PoseError {
     pub length: f32,
     pub degrees: f32,
     pub is_sure: bool,
+    /// The part of the object that is visible.
+    pub visible: f32,
 }
 
 impl Sample {
@@ -387,6 +404,7 @@ impl Sample {
                     length: f32::INFINITY,
                     degrees: 180.0,
                     is_sure: own.is_sure,
+                    visible: self.visible[i],
                 });
                 continue;
             };
@@ -415,6 +433,7 @@ impl Sample {
                 length: pose.location.distance(self.poses[j].location),
                 degrees: yaw.to_degrees().abs(),
                 is_sure: own.is_sure,
+                visible: self.visible[j],
             });
         }
         errors
