@@ -241,8 +241,8 @@ mod tests {
             "enable_pan_request: 256 does not fit"
         );
         assert_eq!(
-            refusal(json!({"taget": 1})),
-            "baxter_core_msgs/HeadPanCommand has no field taget"
+            refusal(json!({"aim": 1})),
+            "baxter_core_msgs/HeadPanCommand has no field aim"
         );
     }
 
