@@ -48,7 +48,7 @@ pub(super) struct WatchArgs {
 }
 
 /// Pictures, and what is known of what they show.
-struct Footage {
+struct PictureRoll {
     table: Table,
     camera: HeadCamera,
     objects: Vec<ObjectSpec>,
@@ -60,7 +60,7 @@ struct Footage {
 }
 
 /// What a watcher has seen.
-struct WatchedFootage {
+struct WatchedRoll {
     demonstration: Demonstration,
     /// The greatest distance, in units, of an object from where it was seen, picture by picture.
     errors: Vec<f32>,
@@ -79,11 +79,11 @@ pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
         None => None,
     };
     let pictures = pictures_in(&args.folder)?;
-    let footage = match pictures.is_empty() {
-        true => Footage::of_recording(&args.folder, setup)?,
-        false => Footage::of_pictures(&args.folder, pictures, setup, args.rate)?,
+    let roll = match pictures.is_empty() {
+        true => PictureRoll::of_recording(&args.folder, setup)?,
+        false => PictureRoll::of_pictures(&args.folder, pictures, setup, args.rate)?,
     };
-    let watched = footage.watch()?;
+    let watched = roll.watch()?;
     let mut task = Task::of(&watched.demonstration);
     task.phrase(&Requirements::default());
     if args.json {
@@ -102,7 +102,7 @@ pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
 
 /// The task that the pictures of a recording show, with its requirements in its sentences.
 pub(super) fn read_watched(recording: &Path) -> Result<(Task, Requirements), Failure> {
-    let watched = Footage::of_recording(recording, None)?.watch()?;
+    let watched = PictureRoll::of_recording(recording, None)?.watch()?;
     let mut task = Task::of(&watched.demonstration);
     let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
     task.phrase(&requirements);
@@ -111,7 +111,7 @@ pub(super) fn read_watched(recording: &Path) -> Result<(Task, Requirements), Fai
 
 type Setup = (Table, Vec<ObjectSpec>, Vec<JointSpec>);
 
-impl Footage {
+impl PictureRoll {
     /// The pictures of a recording, and the objects that it begins with, or those of a task file.
     fn of_recording(folder: &Path, setup: Option<Setup>) -> Result<Self, Failure> {
         let recording = RecordingReader::open(folder).map_err(Failure::input)?;
@@ -186,7 +186,7 @@ impl Footage {
     ///
     /// # Errors
     /// One cannot be read.
-    fn watch(self) -> Result<WatchedFootage, Failure> {
+    fn watch(self) -> Result<WatchedRoll, Failure> {
         let mut watcher = Watcher::new(self.objects, self.joints, self.table, &self.camera);
         let mut errors = Vec::new();
         for (number, (tick, path)) in self.frames.iter().enumerate() {
@@ -200,14 +200,14 @@ impl Footage {
                 errors.push(distances.fold(0.0, f32::max));
             }
         }
-        Ok(WatchedFootage {
+        Ok(WatchedRoll {
             demonstration: watcher.demonstration(),
             errors,
         })
     }
 }
 
-impl WatchedFootage {
+impl WatchedRoll {
     /// How far the objects were from where they were seen.
     fn summary(&self) -> Option<String> {
         let mut errors = self.errors.clone();

@@ -97,7 +97,7 @@ fn upper_blocks_of_a_wall_stand_on_lower_ones() {
             "2. Put the red block to the left of the green block.",
             "3. Put the yellow block to the right of the green block. (after 1)",
             "4. Put the orange block on the green block and the red block. (after 2)",
-            "5. Put the blue block on the yellow block and the green block. (after 3)",
+            "5. Put the blue block on the green block and the yellow block. (after 3)",
         ],
     );
 }

@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use crate::support::{place, record_shipped, stderr, stdout, tabletop};
 
-fn recorded(scenario: &str) -> String {
-    record_shipped(scenario, &format!("watch_{scenario}"))
+fn recorded(scenario: &str, by: &str) -> String {
+    record_shipped(scenario, &format!("watch_{by}_{scenario}"))
 }
 
 /// Output of `watch`, without the errors of the poses.
@@ -22,14 +22,14 @@ fn seen(arguments: &[&str]) -> String {
 #[test]
 fn pictures_show_the_same_tasks_as_recordings() {
     for scenario in ["stack_three", "swap", "wall", "letter_u", "hanoi"] {
-        let demo = recorded(scenario);
+        let demo = recorded(scenario, "tasks");
         assert_eq!(seen(&[&demo]), stdout(&tabletop(&["explain", &demo])));
     }
 }
 
 #[test]
 fn poses_are_seen_to_a_millimetre_on_average() {
-    let demo = recorded("stack_three");
+    let demo = recorded("stack_three", "poses");
     let said = stdout(&tabletop(&["watch", &demo, "--json"]));
     let json: Value = serde_json::from_str(&said).unwrap();
     let errors = json["errors"].as_array().unwrap().iter();
@@ -41,7 +41,7 @@ fn poses_are_seen_to_a_millimetre_on_average() {
 
 #[test]
 fn a_folder_of_pictures_is_watched_with_a_task_file() {
-    let demo = recorded("stack_three");
+    let demo = recorded("stack_three", "folder");
     let pictures = place("watch_pictures");
     fs::create_dir_all(&pictures).unwrap();
     let mut number = 0;
@@ -82,7 +82,7 @@ fn what_cannot_be_watched_is_said() {
 
 #[test]
 fn the_robot_does_what_it_sees() {
-    let demo = recorded("stack_three");
+    let demo = recorded("stack_three", "robot");
     let arguments = ["imitate", &demo, "--eyes", "--watch", "--trials", "3"];
     let output = tabletop(&arguments);
     assert!(

@@ -24,7 +24,7 @@ inventory::collect!(RegisteredTest);
 
 /// The treatment of a test without its prerequisites.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Policy {
+enum LackPolicy {
     Ignore,
     Fail,
 }
@@ -38,7 +38,7 @@ pub fn run() -> ExitCode {
     let arguments = Arguments::from_args();
     let tests = registered_tests();
     let missing = missing(&tests);
-    let policy = Policy::of_environment();
+    let policy = LackPolicy::of_environment();
     let trials = tests.iter().map(|test| test.trial(&missing, policy));
     let conclusion = libtest_mimic::run(&arguments, trials.collect());
     if conclusion.num_ignored > 0 {
@@ -69,7 +69,7 @@ fn list<'a>(prerequisites: impl IntoIterator<Item = &'a Prerequisite>) -> String
     names.join(", ")
 }
 
-impl Policy {
+impl LackPolicy {
     fn of_environment() -> Self {
         match env::var(REQUIRE_ALL).as_deref() {
             Ok("1") => Self::Fail,
@@ -79,7 +79,7 @@ impl Policy {
 }
 
 impl RegisteredTest {
-    fn trial(&'static self, missing: &BTreeSet<Prerequisite>, policy: Policy) -> Trial {
+    fn trial(&'static self, missing: &BTreeSet<Prerequisite>, policy: LackPolicy) -> Trial {
         let lacks = self.lacks(missing);
         let (_, name) = self.name.split_once("::").unwrap_or(("", self.name));
         Trial::ignorable_test(name, move || self.outcome(&lacks, policy))
@@ -89,14 +89,14 @@ impl RegisteredTest {
         list(self.prerequisites.iter().filter(|it| missing.contains(it)))
     }
 
-    fn outcome(&self, lacks: &str, policy: Policy) -> Result<Completion, Failed> {
+    fn outcome(&self, lacks: &str, policy: LackPolicy) -> Result<Completion, Failed> {
         if lacks.is_empty() {
             (self.run)();
             return Ok(Completion::Completed);
         }
         match policy {
-            Policy::Ignore => Ok(Completion::ignored_with(format!("needs {lacks}"))),
-            Policy::Fail => Err(format!("it needs {lacks}, and {REQUIRE_ALL} is 1").into()),
+            LackPolicy::Ignore => Ok(Completion::ignored_with(format!("needs {lacks}"))),
+            LackPolicy::Fail => Err(format!("it needs {lacks}, and {REQUIRE_ALL} is 1").into()),
         }
     }
 }
@@ -111,14 +111,14 @@ mod tests {
         run: || panic!("it ran"),
     };
 
-    fn outcome(missing: &[Prerequisite], policy: Policy) -> Result<Completion, Failed> {
+    fn outcome(missing: &[Prerequisite], policy: LackPolicy) -> Result<Completion, Failed> {
         TEST.outcome(&TEST.lacks(&missing.iter().copied().collect()), policy)
     }
 
     #[test]
     fn a_test_that_lacks_something_is_ignored_with_the_reason() {
         let missing = [Prerequisite::Python, Prerequisite::Perl];
-        let Ok(Completion::Ignored { reason }) = outcome(&missing, Policy::Ignore) else {
+        let Ok(Completion::Ignored { reason }) = outcome(&missing, LackPolicy::Ignore) else {
             panic!("it is not ignored");
         };
         assert_eq!(reason.unwrap(), "needs Python 3 (python3)");
@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn a_test_that_lacks_something_fails_where_all_is_required() {
         let missing = [Prerequisite::Octave, Prerequisite::Python];
-        let failed = outcome(&missing, Policy::Fail).err().unwrap();
+        let failed = outcome(&missing, LackPolicy::Fail).err().unwrap();
         let message = failed.message().unwrap();
         let lacks = "GNU Octave (octave-cli), Python 3 (python3)";
         assert!(message.contains(lacks), "{message}");
@@ -136,6 +136,6 @@ mod tests {
     #[test]
     #[should_panic = "it ran"]
     fn a_test_that_lacks_nothing_runs() {
-        drop(outcome(&[Prerequisite::Xmllint], Policy::Ignore));
+        drop(outcome(&[Prerequisite::Xmllint], LackPolicy::Ignore));
     }
 }

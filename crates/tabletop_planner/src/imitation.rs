@@ -119,10 +119,13 @@ impl Imitator<'_> {
         stage: &mut dyn PlanningStage,
         tell: &mut dyn FnMut(Doing),
     ) -> Result<(), Stopped> {
+        let sees_all = stage.look().is_empty();
+        if sees_all && self.gives_up(stage.sight()) {
+            return Ok(());
+        }
         self.park_all(stage)?;
         self.look(stage)?;
-        if let Some(unreached) = self.unreached(stage.sight()) {
-            self.outcome.failure = Some(unreached);
+        if !sees_all && self.gives_up(stage.sight()) {
             return Ok(());
         }
         self.before = Before::anything(stage.sight());
@@ -227,6 +230,12 @@ impl Imitator<'_> {
         }
         stage.look();
         Ok(())
+    }
+
+    /// True if it gives up at once, since no arm takes an object of the task where it stands.
+    fn gives_up(&mut self, sight: &Sight) -> bool {
+        self.outcome.failure = self.unreached(sight);
+        self.outcome.failure.is_some()
     }
 
     /// The first step whose object no arm can take where it stands in the beginning. Objects on, in or around others may be elsewhere by then.

@@ -80,7 +80,7 @@ const REACH: usize = 2;
 const HEADING_WEIGHT: f32 = 4.0;
 
 #[derive(Clone, Copy)]
-enum Part {
+enum MoveEnd {
     Pick,
     Place,
 }
@@ -96,16 +96,16 @@ impl LabelPlanes {
     }
 
     /// The first plane of a mark, which is its heat; then come its levels, then its heading.
-    fn first(&self, part: Part) -> usize {
+    fn first(&self, part: MoveEnd) -> usize {
         match part {
-            Part::Pick => 0,
-            Part::Place => self.planes_of_mark(),
+            MoveEnd::Pick => 0,
+            MoveEnd::Place => self.planes_of_mark(),
         }
     }
 
     /// The label that a response gives.
     pub fn label(&self, response: &Response) -> Label {
-        let pick = self.first(Part::Pick);
+        let pick = self.first(MoveEnd::Pick);
         let most = peak(&response.planes, pick).2;
         let all: f32 = (response.planes.pixels(pick))
             .map(|heat| libm::expf(heat - most))
@@ -114,12 +114,13 @@ impl LabelPlanes {
         if response.whole > most + libm::logf(all) {
             return Label::Done;
         }
-        let [pick, place] = [Part::Pick, Part::Place].map(|part| self.mark(&response.planes, part));
+        let [pick, place] =
+            [MoveEnd::Pick, MoveEnd::Place].map(|part| self.mark(&response.planes, part));
         Label::Move { pick, place }
     }
 
     /// The mark of a part: the mean over a window round the hottest pixel, weighted by heat.
-    fn mark(&self, planes: &Planes, part: Part) -> HeatMark {
+    fn mark(&self, planes: &Planes, part: MoveEnd) -> HeatMark {
         let heat = self.first(part);
         let (column, row, most) = peak(planes, heat);
         let columns = column.saturating_sub(REACH)..=(column + REACH).min(planes.width() - 1);
@@ -153,13 +154,13 @@ impl LabelPlanes {
             Label::Move { pick, place } => (Some(pick), Some(place)),
             Label::Done => (None, None),
         };
-        let heat = self.first(Part::Pick);
+        let heat = self.first(MoveEnd::Pick);
         let (mut loss, whole) = heat_loss(planes, heat, Some(response.whole), pick, &mut gradient);
         if let Some(pick) = pick {
             loss += self.mark_loss(planes, heat, pick, &mut gradient);
         }
         if let Some(place) = place {
-            let heat = self.first(Part::Place);
+            let heat = self.first(MoveEnd::Place);
             loss += heat_loss(planes, heat, None, Some(place), &mut gradient).0;
             loss += self.mark_loss(planes, heat, place, &mut gradient);
         }
@@ -311,7 +312,7 @@ mod tests {
                 *planes.get_mut(3 + i, column, row) = part;
             }
         }
-        let found = labels.mark(&planes, Part::Pick);
+        let found = labels.mark(&planes, MoveEnd::Pick);
         assert!(found.at.distance(wanted.at) < 1e-3, "{found:?}");
         assert_eq!(found.level, 1);
         assert!((found.heading.yaw().unwrap().angle - 0.7).abs() < 1e-4);

@@ -18,7 +18,7 @@ use crate::{
 /// Eyes that know some objects, and remember where they were in the last picture.
 #[derive(Clone, Debug)]
 pub struct Eyes {
-    pub(crate) objects: Vec<KnownObject>,
+    objects: Vec<KnownObject>,
     camera: Camera,
     table: Table,
     poses: Vec<Option<Pose>>,
@@ -126,6 +126,16 @@ impl Eyes {
         }
     }
 
+    /// Exchanges what was last seen of objects that look the same, so that each is as near as possible to one of these places.
+    pub fn name_by_place(&mut self, places: &[Option<Pose>], percept: &mut Percept) {
+        keep_identities(&self.objects, places, &mut percept.objects, |seen| {
+            seen.pose
+        });
+        for (own, seen) in self.poses.iter_mut().zip(&percept.objects) {
+            *own = seen.pose;
+        }
+    }
+
     /// Looks at the next picture. A picture whose size is not the camera's shows nothing.
     pub fn look(&mut self, picture: &Picture, scenery: &KnownScenery) -> Percept {
         let is_of_camera = picture.width == self.camera.width
@@ -180,7 +190,7 @@ impl Eyes {
             ObjectPercept { pose, ..seen }
         });
         let mut objects: Vec<_> = percepts.collect();
-        keep_identities(&self.objects, &self.poses, &mut objects);
+        keep_identities(&self.objects, &self.poses, &mut objects, |seen| seen.pose);
         let least = arrangement.unexplained();
         let clutter = clutter(arrangement.residual.size(), |i| {
             arrangement.square(i) > least
@@ -213,7 +223,7 @@ impl Eyes {
 }
 
 impl ObjectPercept {
-    pub(crate) const HIDDEN: Self = Self {
+    const HIDDEN: Self = Self {
         pose: None,
         deviation: PoseDeviation {
             location: Vec3::INFINITY,

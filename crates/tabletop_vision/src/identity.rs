@@ -2,33 +2,17 @@
 
 use tabletop_geometry::Pose;
 
-use crate::{
-    eyes::{Eyes, ObjectPercept, Percept},
-    known::KnownObject,
-};
-
-impl Eyes {
-    /// Exchanges what was last seen of objects that look the same, so that each is as near as possible to one of these places.
-    pub fn name_by_place(&mut self, places: &[Option<Pose>], percept: &mut Percept) {
-        keep_identities(&self.objects, places, &mut percept.objects);
-        self.remember(
-            percept
-                .objects
-                .iter()
-                .map(|seen| seen.pose)
-                .collect::<Vec<_>>(),
-        );
-    }
-}
+use crate::known::KnownObject;
 
 /// Exchanges what is seen of objects that look the same, so that each is as near as possible to where it was.
-pub(crate) fn keep_identities(
+pub(crate) fn keep_identities<T>(
     objects: &[KnownObject],
     before: &[Option<Pose>],
-    seen: &mut [ObjectPercept],
+    seen: &mut [T],
+    pose: impl Fn(&T) -> Option<Pose>,
 ) {
-    let distance = |seen: &ObjectPercept, before: Option<Pose>| {
-        let way = before?.location.distance(seen.pose?.location);
+    let distance = |seen: &T, before: Option<Pose>| {
+        let way = before?.location.distance(pose(seen)?.location);
         Some(way)
     };
     let mut is_settled = vec![false; objects.len()];
@@ -70,12 +54,9 @@ mod tests {
         let objects = [Rgb::RED, Rgb::RED, Rgb::GREEN, Rgb::RED].map(block);
         let at = |x: f32| Some(Pose::at(Vec3::X * x));
         let before = [at(0.0), at(2.0), at(9.0), at(4.0)];
-        let mut seen = [at(4.0), at(0.1), at(2.0), at(7.0)].map(|pose| ObjectPercept {
-            pose,
-            ..ObjectPercept::HIDDEN
-        });
-        keep_identities(&objects, &before, &mut seen);
-        let places = seen.map(|it| it.pose.unwrap().location.x);
+        let mut seen = [at(4.0), at(0.1), at(2.0), at(7.0)];
+        keep_identities(&objects, &before, &mut seen, |pose| *pose);
+        let places = seen.map(|pose| pose.unwrap().location.x);
         assert_eq!(places, [0.1, 7.0, 2.0, 4.0]);
     }
 }

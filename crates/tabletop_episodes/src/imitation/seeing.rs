@@ -82,7 +82,7 @@ fn stances(task: &Task, binding: &Binding, object: &ObjectSpec) -> Vec<Quat> {
 }
 
 /// What the head camera shows: the picture, with the robot's own links as they are in it.
-struct Look {
+struct HeadPicture {
     camera: Camera,
     picture: Picture,
     links: Vec<DrawnFigure>,
@@ -172,7 +172,7 @@ impl<'a> SeeingStage<'a> {
         names
     }
 
-    fn look_through_head_camera(&mut self) -> Option<Look> {
+    fn look_through_head_camera(&mut self) -> Option<HeadPicture> {
         let look =
             self.app
                 .world_mut()
@@ -185,7 +185,7 @@ impl<'a> SeeingStage<'a> {
                     // Colours are all that it sees.
                     picture.depth.fill(0.0);
                     picture.objects.fill(0);
-                    Look {
+                    HeadPicture {
                         camera,
                         picture,
                         links: scene.figures,
