@@ -1,5 +1,6 @@
 //! Watching: a demonstration, from the pictures of the head camera alone.
 
+use bevy::math::Quat;
 use tabletop_camera::Camera;
 use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Picture, SimTick, Table};
 use tabletop_geometry::Pose;
@@ -36,18 +37,11 @@ impl Watcher {
         table: Table,
         camera: &HeadCamera,
     ) -> Self {
-        let watched = objects.into_iter().map(|spec| {
-            let known = KnownObject::of(&spec.shape).standing([spec.pose.rotation]);
-            let known = match spec.is_fixed() {
-                true => known.fixed(),
-                false => known,
-            };
-            Watched {
-                spec,
-                known,
-                track: Track::default(),
-                pose: None,
-            }
+        let watched = objects.into_iter().map(|spec| Watched {
+            known: known_object(&spec, [spec.pose.rotation]),
+            spec,
+            track: Track::default(),
+            pose: None,
         });
         let objects: Vec<_> = watched.collect();
         let known = objects.iter().map(|object| object.known.clone());
@@ -98,6 +92,18 @@ impl Watcher {
             self.joints,
             self.last.unwrap_or_default(),
         )
+    }
+}
+
+/// What eyes know of an object that stands in one of these ways: rotations of it, each turned about the vertical by any angle.
+pub(crate) fn known_object(
+    spec: &ObjectSpec,
+    stances: impl IntoIterator<Item = Quat>,
+) -> KnownObject {
+    let known = KnownObject::of(&spec.shape).standing(stances);
+    match spec.is_fixed() {
+        true => known.fixed(),
+        false => known,
     }
 }
 

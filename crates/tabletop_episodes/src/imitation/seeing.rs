@@ -22,6 +22,7 @@ use tabletop_task::{Binding, Task};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, Visibility};
 
 use super::advance;
+use crate::watching::known_object;
 
 /// Angle, in rad, by which the head turns for what is beside the picture.
 const PAN: f64 = 0.5;
@@ -103,14 +104,8 @@ impl<'a> SeeingStage<'a> {
             objects: BTreeMap::new(),
             ..truth.clone()
         };
-        let known = objects.iter().map(|spec| {
-            let object = KnownObject::of(&spec.shape).standing(stances(spec));
-            let object = match spec.is_fixed() {
-                true => object.fixed(),
-                false => object,
-            };
-            (spec.id.clone(), object)
-        });
+        let known = objects.iter();
+        let known = known.map(|spec| (spec.id.clone(), known_object(spec, stances(spec))));
         let mut stage = Self {
             known: known.collect(),
             held: vec![None; belief.limbs.len()],
@@ -133,19 +128,6 @@ impl<'a> SeeingStage<'a> {
         let objects = objects.into_iter();
         truth.objects = objects.map(|(id, object)| (named(id), object)).collect();
         truth
-    }
-
-    /// The distance, in units, of each object from where the robot believes it to be, by the robot's name; infinite if it has not seen it.
-    pub fn errors(&self) -> BTreeMap<String, f32> {
-        let truth = self.truth().objects.into_iter();
-        let errors = truth.map(|(id, object)| {
-            let believed = self.belief.objects.get(&id);
-            let error = believed.map_or(f32::INFINITY, |believed| {
-                believed.pose.location.distance(object.pose.location)
-            });
-            (id, error)
-        });
-        errors.collect()
     }
 
     /// Names objects that look the same as the nearest ones that the robot has seen.
