@@ -1,9 +1,11 @@
 //! Watching: a demonstration, from the pictures of the head camera alone.
 
-use bevy::math::Quat;
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use bevy::math::{Quat, Vec3};
 use tabletop_camera::Camera;
 use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Picture, SimTick, Table};
-use tabletop_geometry::Pose;
+use tabletop_geometry::{Pose, turn_about};
 use tabletop_task::{Demonstration, Track, angle_between};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept};
 
@@ -15,6 +17,8 @@ pub struct Watcher {
     table: Table,
     objects: Vec<Watched>,
     joints: Vec<JointSpec>,
+    /// The eyes for the first picture, in which objects stand as they are described.
+    first: Option<Eyes>,
     eyes: Eyes,
     /// The tick of the last picture.
     last: Option<SimTick>,
@@ -29,26 +33,29 @@ struct Watched {
 }
 
 impl Watcher {
-    /// A watcher of these objects, each of which stands as it does in its description, turned about the vertical by any angle. Its place in there only tells
-    /// which of several objects that look the same has which id.
+    /// A watcher of these objects, each of which stands in the first picture as it does in its description, turned about the vertical by any angle. Its
+    /// place in there only tells which of several objects that look the same has which id.
     pub fn new(
         objects: Vec<ObjectSpec>,
         joints: Vec<JointSpec>,
         table: Table,
         camera: &HeadCamera,
     ) -> Self {
-        let watched = objects.into_iter().map(|spec| Watched {
-            known: known_object(&spec, [spec.pose.rotation]),
+        let camera = Camera::of_head(camera, &table);
+        let described = known_objects(&objects, &joints, |own| vec![own]);
+        let known = known_objects(&objects, &joints, |own| sides(own).collect());
+        let watched = objects.into_iter().zip(&known);
+        let watched = watched.map(|(spec, known)| Watched {
+            known: known.clone(),
             spec,
             track: Track::default(),
             pose: None,
         });
-        let objects: Vec<_> = watched.collect();
-        let known = objects.iter().map(|object| object.known.clone());
         Self {
-            eyes: Eyes::new(known.collect(), Camera::of_head(camera, &table), table),
+            objects: watched.collect(),
+            first: Some(Eyes::new(described, camera, table)),
+            eyes: Eyes::new(known, camera, table),
             table,
-            objects,
             joints,
             last: None,
         }
@@ -56,12 +63,18 @@ impl Watcher {
 
     /// Watches the next picture, of this tick of the demonstration. Ticks must ascend.
     pub fn watch(&mut self, tick: SimTick, picture: &Picture) {
-        let mut percept = self.eyes.look(picture, &KnownScenery::default());
-        if self.last.replace(tick).is_none() {
-            let places = self.objects.iter().map(|object| Some(object.spec.pose));
-            let places: Vec<_> = places.collect();
-            self.eyes.name_by_place(&places, &mut percept);
-        }
+        let percept = match self.first.take() {
+            Some(mut eyes) => {
+                let mut percept = eyes.look(picture, &KnownScenery::default());
+                let places = self.objects.iter().map(|object| Some(object.spec.pose));
+                eyes.name_by_place(&places.collect::<Vec<_>>(), &mut percept);
+                self.eyes
+                    .remember(percept.objects.iter().map(|seen| seen.pose));
+                percept
+            }
+            None => self.eyes.look(picture, &KnownScenery::default()),
+        };
+        self.last = Some(tick);
         for (object, seen) in self.objects.iter_mut().zip(percept.objects) {
             if let ObjectPercept {
                 pose: Some(pose),
@@ -105,6 +118,42 @@ pub(crate) fn known_object(
         true => known.fixed(),
         false => known,
     }
+}
+
+/// What eyes know of objects that stand in some of these ways, by their own rotations.
+fn known_objects(
+    objects: &[ObjectSpec],
+    joints: &[JointSpec],
+    stances: impl Fn(Quat) -> Vec<Quat>,
+) -> Vec<KnownObject> {
+    let known = objects.iter().map(|spec| {
+        let known = known_object(spec, stances(spec.pose.rotation));
+        (spec.id.clone(), known)
+    });
+    with_guides(&known.collect::<Vec<_>>(), joints)
+}
+
+/// The rotations of an object that stands on each of its sides, as it stands in one of them first.
+pub(crate) fn sides(own: Quat) -> impl Iterator<Item = Quat> {
+    let about_x = [0.0, FRAC_PI_2, -FRAC_PI_2, PI].map(|angle| (Vec3::X, angle));
+    let about_y = [FRAC_PI_2, -FRAC_PI_2].map(|angle| (Vec3::Y, angle));
+    let turns = about_x.into_iter().chain(about_y);
+    turns.map(move |(axis, angle)| turn_about(axis, angle) * own)
+}
+
+/// Objects by id, as eyes know them that know the joints between them, too.
+pub(crate) fn with_guides(
+    objects: &[(String, KnownObject)],
+    joints: &[JointSpec],
+) -> Vec<KnownObject> {
+    let mut known: Vec<_> = objects.iter().map(|(_, known)| known.clone()).collect();
+    let number = |id: &String| objects.iter().position(|(own, _)| own == id);
+    for joint in joints {
+        if let [Some(first), Some(second)] = joint.objects.each_ref().map(number) {
+            known[second] = known[second].clone().guided(first, joint);
+        }
+    }
+    known
 }
 
 impl Watched {

@@ -1,15 +1,17 @@
 //! The arrangement of all objects that explains a picture best: found object by object, best explained first, and then settled together.
 
+mod finding;
+mod guided;
+mod settling;
+
 use bevy::math::Vec3;
 use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
-    guess::{Guess, PoseCandidate},
     known::{KnownObject, StandingPose},
-    refine::{FINE, Refinement, RefinementStage, TRACKING},
+    refine::{Refinement, TRACKING},
     residual::{OUTLIER, Residual, TriedFit, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
-    support,
 };
 
 /// The part of what an object should explain that it has to explain at least.
@@ -93,14 +95,14 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         self.squares[pixel]
     }
 
-    /// The solids of the placed objects that may be seen in a window, but for one.
-    pub fn others(&self, but: Option<usize>, window: &PictureWindow) -> Vec<DrawnSolid> {
+    /// The solids of the placed objects that may be seen in a window, but for some.
+    fn all_but(&self, but: impl Fn(usize) -> bool, window: &PictureWindow) -> Vec<DrawnSolid> {
         let mut solids = Vec::new();
         for (i, placement) in self.placements.iter().enumerate() {
             let (Some(placement), Some(own)) = (placement, &self.windows[i]) else {
                 continue;
             };
-            if but != Some(i) && !own.intersection(window).is_empty() {
+            if !but(i) && !own.intersection(window).is_empty() {
                 self.objects[i].draw(placement, i as u32 + 1, &mut solids);
             }
         }
@@ -109,7 +111,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
 
     /// Compares the arrangement with the picture in a window.
     pub fn compare(&mut self, window: &PictureWindow) {
-        let solids = self.others(None, window);
+        let solids = self.all_but(|_| false, window);
         self.residual.keep(&solids, window);
         for row in rows(window, self.residual.seen().width) {
             self.squares[row.clone()].copy_from_slice(&self.residual.squares()[row]);
@@ -118,7 +120,11 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
 
     /// Keeps everything but one object, within a window.
     pub fn keep_others(&mut self, object: usize, window: &PictureWindow) {
-        let solids = self.others(Some(object), window);
+        self.keep_all_but(|i| i == object, window);
+    }
+
+    fn keep_all_but(&mut self, but: impl Fn(usize) -> bool, window: &PictureWindow) {
+        let solids = self.all_but(but, window);
         self.residual.keep(&solids, window);
     }
 
@@ -129,8 +135,13 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         Some(window.widened(1, self.residual.size()))
     }
 
-    /// Places an object, or takes it away.
+    /// Places an object, or takes it away, and with it what it guides.
     pub fn place(&mut self, object: usize, placement: Option<StandingPose>) {
+        if placement.is_none() {
+            for (part, _) in self.parts(object) {
+                self.place(part, None);
+            }
+        }
         let before = self.windows[object].take();
         self.placements[object] = placement;
         let now = placement.and_then(|placement| self.window_at(object, &placement));
@@ -181,7 +192,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
 
     /// The solids of all objects.
     pub fn solids(&self) -> Vec<DrawnSolid> {
-        self.others(None, &self.residual.whole())
+        self.all_but(|_| false, &self.residual.whole())
     }
 
     /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere.
@@ -191,7 +202,10 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             self.place(i, *placement);
         }
         let good = self.good();
-        for i in 0..self.objects.len() {
+        // What guides others moves them with it: these come to their place along it before, and after.
+        let (guided, free): (Vec<_>, Vec<_>) =
+            (0..self.objects.len()).partition(|&i| self.objects[i].guide().is_some());
+        for &i in [&guided, &free, &guided].into_iter().flatten() {
             let fit = self.fit(i);
             if fit.misfit > good * fit.pixels as f32 {
                 self.settle(i, &TRACKING, true);
@@ -223,214 +237,6 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             self.allowance = SUPPORTED;
         } else {
             self.settle_all(2, true);
-        }
-    }
-
-    /// Finds all objects without a placement, the one that explains most of its pixels first.
-    fn find_all(&mut self, chance: &mut impl FnMut() -> f32) {
-        let mut candidates: Vec<Option<Option<PoseCandidate>>> = vec![None; self.objects.len()];
-        while let Some((object, placement)) = self.next_found(&mut candidates, chance) {
-            self.place(object, Some(placement));
-            let window = self.windows[object].clone().unwrap_or_default();
-            let wide = window.widened(4, self.residual.size());
-            for (i, candidate) in candidates.iter_mut().enumerate() {
-                let is_stale = candidate.as_ref().is_some_and(|candidate| {
-                    self.colors[i] == self.colors[object]
-                        || candidate.as_ref().is_none_or(|candidate| {
-                            !candidate.window.intersection(&wide).is_empty()
-                        })
-                });
-                if is_stale {
-                    *candidate = None;
-                }
-            }
-        }
-    }
-
-    /// The object to be placed next: the first one that is well explained, beginning with those of which most is seen; else the best.
-    fn next_found(
-        &mut self,
-        candidates: &mut [Option<Option<PoseCandidate>>],
-        chance: &mut impl FnMut() -> f32,
-    ) -> Option<(usize, StandingPose)> {
-        let open = (0..self.objects.len()).filter(|&i| {
-            // Of objects that look the same, the first one is looked for.
-            let is_alike = |j: usize| self.objects[j] == self.objects[i];
-            self.placements[i].is_none()
-                && !(0..i).any(|j| self.placements[j].is_none() && is_alike(j))
-        });
-        let open: Vec<_> = open.collect();
-        let mut order: Vec<_> = open
-            .into_iter()
-            .filter_map(|i| Some((i, self.guess(i)?.promise() * chance())))
-            .collect();
-        order.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut best: Option<(usize, StandingPose, f32)> = None;
-        for (i, _) in order {
-            if candidates[i].is_none() {
-                candidates[i] = Some(self.guess(i).and_then(|mut guess| guess.best()));
-            }
-            let Some(candidate) = candidates[i].as_ref().and_then(Option::as_ref) else {
-                continue;
-            };
-            if candidate.score > self.enough {
-                return Some((i, candidate.placement));
-            }
-            let score = candidate.score * chance();
-            if score > LEAST_SCORE && best.is_none_or(|best| score > best.2) {
-                best = Some((i, candidate.placement, score));
-            }
-        }
-        best.map(|(object, placement, _)| (object, placement))
-    }
-
-    /// The search for an object among those that are placed; `None` if no pixel may show it.
-    fn guess(&mut self, object: usize) -> Option<Guess<'_, 'a, 'p>> {
-        let blobs = self.open_blobs(object).into_iter().map(|blob| {
-            let losses = blob.pixels.iter().map(|&i| loss(self.squares[i], OUTLIER));
-            let open = losses.sum();
-            (blob, open)
-        });
-        let blobs: Vec<_> = blobs.collect();
-        if blobs.is_empty() {
-            return None;
-        }
-        let others = (0..self.objects.len()).filter(|&i| i != object);
-        let placed = others.clone().filter_map(|i| {
-            let (placement, window) = (self.placements[i]?, self.windows[i].clone()?);
-            let mut solids = Vec::new();
-            self.objects[i].draw(&placement, i as u32 + 1, &mut solids);
-            Some((window, solids))
-        });
-        let taken = others.clone().filter_map(|i| {
-            let placement = self.placements[i]?;
-            Some(self.objects[i].touched(&placement))
-        });
-        let taken = taken.flatten();
-        let known = &self.objects[object];
-        let own_seats = known.seats();
-        let neighbours = others.clone().filter_map(|i| {
-            let placement = self.placements[i]?;
-            let foot = placement.location.z + self.objects[i].stance(&placement).low;
-            let above = self.objects[i].seats().into_iter().map(|seat| foot + seat);
-            let below = own_seats.iter().map(|seat| foot - seat);
-            let heights = above.chain(below).filter(|height| *height > -0.05);
-            Some((placement, heights.map(|height| height.max(0.0)).collect()))
-        });
-        Some(Guess {
-            enough: self.enough,
-            others: placed.collect(),
-            neighbours: match known.is_fixed() {
-                true => Vec::new(),
-                false => neighbours.collect(),
-            },
-            taken: taken.collect(),
-            heights: match known.is_fixed() {
-                true => vec![0.0],
-                false => support::pile_heights(others.map(|i| &self.objects[i]), HIGHEST),
-            },
-            residual: &mut self.residual,
-            object: known,
-            blobs,
-        })
-    }
-
-    /// Refines an object among the others: on what it stands on, or in the air. Returns by how much, in units, it moved.
-    fn settle(&mut self, object: usize, stages: &[RefinementStage], is_last: bool) -> f32 {
-        let Some(before) = self.placements[object] else {
-            return 0.0;
-        };
-        let Some(window) = self.window_at(object, &before) else {
-            return 0.0;
-        };
-        self.keep_others(object, &window.widened(6, self.residual.size()));
-        let known = &self.objects[object];
-        let eye = self.residual.eye();
-        let good = self.good();
-        let mut refinement = Refinement {
-            residual: &mut self.residual,
-            object: known,
-            is_free: !known.is_fixed(),
-        };
-        let others = (self.objects.iter().zip(&self.placements).enumerate())
-            .filter(|(i, _)| *i != object)
-            .filter_map(|(_, (other, placement))| Some((other, placement.as_ref()?)));
-        refinement.is_free = false;
-        let (mut settled, trial) = refinement.refined(before, stages);
-        let heights = support::heights(known, &settled, others.clone());
-        let stands = heights
-            .iter()
-            .any(|height| (height - settled.location.z).abs() < 1e-3);
-        if !known.is_fixed() && (!stands || trial.misfit > good * trial.pixels as f32) {
-            let here = settled;
-            refinement.is_free = true;
-            let (free, free_trial) = refinement.refined(here, &FINE);
-            refinement.is_free = false;
-            let mut heights = support::heights(known, &free, others);
-            heights.sort_by(|a, b| {
-                let [a, b] = [a, b].map(|height| (height - free.location.z).abs());
-                a.total_cmp(&b)
-            });
-            let near = heights.into_iter().take(3);
-            let standing =
-                near.map(|height| refinement.refined(free.at_height(height, eye), &FINE));
-            let best = standing.min_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
-            // What it stands on may not be in its place yet.
-            let (hovering, gain) = match !is_last
-                && trial.gain < free_trial.gain + self.allowance * trial.gain.abs()
-            {
-                true => (here, trial.gain),
-                false => (free, free_trial.gain),
-            };
-            let allowance = self.allowance * gain.abs() + 20.0 * self.noise.max(1.0);
-            settled = match best {
-                Some((placement, standing)) if standing.gain <= gain + allowance => placement,
-                _ => {
-                    refinement.is_free = true;
-                    hovering
-                }
-            };
-        }
-        if is_last {
-            let trial = refinement.try_at(&settled, OUTLIER);
-            let is_good = trial.misfit <= good * trial.pixels as f32;
-            if !is_good {
-                settled = refinement.shaken(settled).0;
-            }
-            settled = refinement.polished(settled, 0.004).0;
-        }
-        self.place(object, Some(settled));
-        settled.location.distance(before.location) + (settled.yaw - before.yaw).abs()
-    }
-
-    /// Settles all objects, in turn.
-    fn settle_all(&mut self, rounds: usize, is_end: bool) {
-        let mut has_moved = vec![true; self.objects.len()];
-        for round in 0..rounds {
-            let is_last = is_end && round + 1 == rounds;
-            // What stands on others comes after them.
-            let mut order: Vec<_> = (0..self.objects.len()).collect();
-            let lowest = |i: usize| {
-                let placement = self.placements[i]?;
-                Some(placement.location.z + self.objects[i].stance(&placement).low)
-            };
-            let height = |i: usize| lowest(i).unwrap_or(f32::INFINITY);
-            order.sort_by(|&a, &b| height(a).total_cmp(&height(b)));
-            for i in order {
-                let is_touched = (0..self.objects.len()).any(|j| {
-                    let near = self.windows[i].as_ref().zip(self.windows[j].as_ref());
-                    has_moved[j]
-                        && near.is_some_and(|(own, other)| !own.intersection(other).is_empty())
-                });
-                if is_touched || is_last {
-                    let stages = match (is_end, round) {
-                        (false, _) => &FINE[..1],
-                        (true, 0) => &FINE[..],
-                        (true, _) => &FINE[1..],
-                    };
-                    has_moved[i] = self.settle(i, stages, is_last) > 1e-3;
-                }
-            }
         }
     }
 

@@ -231,9 +231,9 @@ impl<'p> Guess<'_, '_, 'p> {
         let down = if ray.z < -1e-3 { -ray.z } else { 1e-3 };
         let location = eye + ray * ((eye.z - middle) / down).clamp(0.0, 1e3);
         StandingPose {
-            location: location.truncate().extend(height - own.low),
             yaw,
             stance,
+            ..StandingPose::at(location.truncate().extend(height - own.low))
         }
     }
 
@@ -302,10 +302,10 @@ impl<'p> Guess<'_, '_, 'p> {
         let mut tried = Vec::new();
         for (neighbour, heights) in self.neighbours.clone() {
             for height in heights {
+                let location = neighbour.location.truncate().extend(height - low);
                 let placement = StandingPose {
-                    location: neighbour.location.truncate().extend(height - low),
                     yaw: symmetry.reduced(neighbour.yaw),
-                    stance: 0,
+                    ..StandingPose::at(location)
                 };
                 let about = self.at(seed.pixel, 0, height, 0.0);
                 let is_near = about.location.distance(placement.location) < NEAR * radius;

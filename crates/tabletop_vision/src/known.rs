@@ -4,8 +4,10 @@ use std::f32::consts::TAU;
 
 use bevy::math::{Quat, Vec3, Vec3Swizzles as _};
 use tabletop_camera::DrawnSolid;
-use tabletop_core::Shape;
+use tabletop_core::{JointSpec, Shape};
 use tabletop_geometry::{Bounds, PlacedSolid, Pose, Primitive, Rgb, Solid, turn_about};
+
+use crate::guide::Guide;
 
 /// An object whose shape and colours are known, and whose pose is not.
 ///
@@ -27,6 +29,7 @@ pub struct KnownObject {
     touched: Vec<Primitive>,
     stances: Vec<Stance>,
     is_fixed: bool,
+    guide: Option<Guide>,
 }
 
 /// The turns about the vertical after which an object looks the same.
@@ -78,6 +81,8 @@ pub(crate) struct StandingPose {
     pub location: Vec3,
     pub yaw: f32,
     pub stance: usize,
+    /// The rotation before that by the yaw: none, unless a guide tilts it.
+    pub tilt: Quat,
 }
 
 /// The largest difference, in units, between points that count as the same.
@@ -93,15 +98,21 @@ impl KnownObject {
             touched,
             stances,
             is_fixed: false,
+            guide: None,
         }
     }
 
-    /// The same object, which may stand in each of these ways: rotations of the object, each of which may be turned about the vertical.
-    /// Without any, it stands as in its own frame.
+    /// The same object, which may stand in each of these ways: rotations of the object, each of which may be turned about the vertical. Of those in
+    /// which it looks the same, the first counts. Without any, it stands as in its own frame.
     #[must_use]
     pub fn standing(mut self, rotations: impl IntoIterator<Item = Quat>) -> Self {
-        let stance = |rotation| Stance::of(&self.drawn, &self.touched, rotation);
-        let stances: Vec<_> = rotations.into_iter().map(stance).collect();
+        let mut stances: Vec<Stance> = Vec::new();
+        for rotation in rotations {
+            let stance = Stance::of(&self.drawn, &self.touched, rotation);
+            if stances.iter().all(|known| stance.turn_to(known).is_none()) {
+                stances.push(stance);
+            }
+        }
         if !stances.is_empty() {
             self.stances = stances;
         }
@@ -115,6 +126,14 @@ impl KnownObject {
         self
     }
 
+    /// The same object, which a joint fastens to another one, and leaves one motion: a lid that slides on its box, a door on its hinge. The other one is the
+    /// first object of the joint, given by its number among those that the eyes know. A ball joint guides nothing.
+    #[must_use]
+    pub fn guided(mut self, by: usize, joint: &JointSpec) -> Self {
+        self.guide = Guide::of(by, joint);
+        self
+    }
+
     /// Its symmetry about the vertical, as it stands first of all.
     pub fn symmetry(&self) -> YawSymmetry {
         self.stances[0].symmetry
@@ -122,6 +141,9 @@ impl KnownObject {
 
     /// The pose that looks the same as this one, and is turned about the vertical as little as possible from a rotation.
     pub fn turned_least(&self, pose: Pose, from: Quat) -> Pose {
+        if self.guide.is_some() {
+            return pose;
+        }
         let turn = from * pose.rotation.inverse();
         let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
         let symmetry = self.stance(&self.placement(pose)).symmetry;
@@ -131,6 +153,10 @@ impl KnownObject {
 
     pub(crate) const fn is_fixed(&self) -> bool {
         self.is_fixed
+    }
+
+    pub(crate) const fn guide(&self) -> Option<&Guide> {
+        self.guide.as_ref()
     }
 
     pub(crate) fn stances(&self) -> &[Stance] {
@@ -164,15 +190,7 @@ impl KnownObject {
     /// The angle in rad, if there is one, by which this object has to be turned about the vertical to look like another, both in their
     /// first stance: a bar along X looks like one along Y after a quarter turn.
     pub fn turn_to(&self, other: &Self) -> Option<f32> {
-        let [own, theirs] = [self, other].map(|object| &object.stances[0]);
-        let is_as_large = (own.radius - theirs.radius).abs() < SAME
-            && (own.low - theirs.low).abs() < SAME
-            && (own.high - theirs.high).abs() < SAME;
-        let quarters = (0..4).map(|quarter| quarter as f32 * TAU / 4.0);
-        let turns = quarters.filter(|_| is_as_large);
-        turns
-            .into_iter()
-            .find(|&turn| fills_alike(&theirs.solids(), &own.solids(), turn_about(Vec3::Z, turn)))
+        self.stances[0].turn_to(&other.stances[0])
     }
 
     /// The heights above its lowest point at which other objects may stand on it or in it, in its first stance.
@@ -191,14 +209,18 @@ impl KnownObject {
     /// The pose of a placement.
     pub(crate) fn pose(&self, placement: &StandingPose) -> Pose {
         let stance = self.stance(placement);
-        Pose::new(
-            placement.location,
-            (turn_about(Vec3::Z, placement.yaw) * stance.rotation).normalize(),
-        )
+        let body = placement.body();
+        Pose::new(body.location, (body.rotation * stance.rotation).normalize())
     }
 
-    /// The placement nearest to a pose.
+    /// The placement nearest to a pose: of a guided object, the same pose.
     pub(crate) fn placement(&self, pose: Pose) -> StandingPose {
+        if self.guide.is_some() {
+            return StandingPose {
+                tilt: (pose.rotation * self.stances[0].rotation.inverse()).normalize(),
+                ..StandingPose::at(pose.location)
+            };
+        }
         let near = |(number, stance): (usize, &Stance)| {
             let turn = pose.rotation * stance.rotation.inverse();
             // The turn about the vertical that is nearest to it.
@@ -207,9 +229,9 @@ impl KnownObject {
             (
                 upright,
                 StandingPose {
-                    location: pose.location,
                     yaw: stance.symmetry.reduced(yaw),
                     stance: number,
+                    ..StandingPose::at(pose.location)
                 },
             )
         };
@@ -221,22 +243,46 @@ impl KnownObject {
 
     /// Adds its solids at a placement to a list.
     pub(crate) fn draw(&self, placement: &StandingPose, object: u32, solids: &mut Vec<DrawnSolid>) {
-        let body = placement.upright();
+        let body = placement.body();
         let stance = self.stance(placement);
         solids.extend((stance.drawn.iter()).map(|solid| DrawnSolid::of(body, solid, object)));
     }
 
     /// The convex solids that others touch, at a placement.
     pub(crate) fn touched(&self, placement: &StandingPose) -> Vec<StandingSolid> {
-        let body = placement.upright();
+        let body = placement.body();
         let solids = self.stance(placement).touched.iter();
         let standing = solids.map(|touched| StandingSolid {
             solid: PlacedSolid::of(&touched.solid, body),
             center: body * touched.center,
-            heights: touched.heights.map(|z| z + placement.location.z),
+            heights: match placement.tilt == Quat::IDENTITY {
+                true => touched.heights.map(|z| z + placement.location.z),
+                false => {
+                    let Bounds { low, high } = Bounds::of_primitive(&touched.solid, body);
+                    [low.z, high.z]
+                }
+            },
             radius: touched.radius,
         });
         standing.collect()
+    }
+
+    /// The object at a placement together with others, which move with it, in their poses.
+    pub(crate) fn carrying<'k>(
+        &self,
+        placement: &StandingPose,
+        parts: impl IntoIterator<Item = (&'k Self, Pose)>,
+    ) -> Self {
+        let to_body = placement.body().inverse();
+        let mut whole = self.clone();
+        for (part, pose) in parts {
+            let drawn = part.drawn.iter().map(|solid| Primitive {
+                pose: to_body * pose * solid.pose,
+                ..solid.clone()
+            });
+            whole.stances[placement.stance].drawn.extend(drawn);
+        }
+        whole
     }
 }
 
@@ -247,12 +293,13 @@ impl StandingPose {
             location,
             yaw: 0.0,
             stance: 0,
+            tilt: Quat::IDENTITY,
         }
     }
 
     /// The pose of the frame in which the solids of its stance are given.
-    fn upright(&self) -> Pose {
-        Pose::new(self.location, turn_about(Vec3::Z, self.yaw))
+    pub fn body(&self) -> Pose {
+        Pose::new(self.location, turn_about(Vec3::Z, self.yaw) * self.tilt)
     }
 
     /// The same placement elsewhere on the ray from the eye, with its origin at this height.
@@ -302,6 +349,16 @@ impl TouchedSolid {
 }
 
 impl Stance {
+    /// The angle in rad, if there is one, by which this stance has to be turned about the vertical to look like another one.
+    fn turn_to(&self, other: &Self) -> Option<f32> {
+        let is_as_large = (self.radius - other.radius).abs() < SAME
+            && (self.low - other.low).abs() < SAME
+            && (self.high - other.high).abs() < SAME;
+        let quarters = (0..4).map(|quarter| quarter as f32 * TAU / 4.0);
+        let mut turns = quarters.filter(|_| is_as_large);
+        turns.find(|&turn| fills_alike(&other.solids(), &self.solids(), turn_about(Vec3::Z, turn)))
+    }
+
     /// The convex solids that others touch.
     fn solids(&self) -> Vec<Primitive> {
         self.touched.iter().map(|it| it.solid.clone()).collect()

@@ -41,6 +41,7 @@ mod calibration;
 mod clutter;
 mod eyes;
 mod guess;
+mod guide;
 mod identity;
 mod known;
 mod lighting;

@@ -1,9 +1,6 @@
 //! The stage of a robot that is told no pose of an object: it sees them through its head camera.
 
-use std::{
-    collections::BTreeMap,
-    f32::consts::{FRAC_PI_2, PI},
-};
+use std::collections::BTreeMap;
 
 use bevy::{math::Quat, prelude::*};
 use tabletop_camera::{
@@ -14,7 +11,7 @@ use tabletop_core::{
     Drive, HeadCamera, ObjectSpec, Picture, Robot, RobotCommand, RobotLayout, StepApp as _,
     TICK_SECONDS, WriteCommand as _,
 };
-use tabletop_geometry::{Pose, turn_about};
+use tabletop_geometry::Pose;
 use tabletop_planner::{
     Before, Doing, Imitation, LimbOrder, PlanningStage, RobotBody, Stopped, imitate, undone,
 };
@@ -22,7 +19,7 @@ use tabletop_task::{Binding, Task};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, Visibility};
 
 use super::advance;
-use crate::watching::known_object;
+use crate::watching::{known_object, sides, with_guides};
 
 /// Angle, in rad, by which the head turns for what is beside the picture.
 const PAN: f64 = 0.5;
@@ -42,8 +39,6 @@ pub struct SeeingStage<'a> {
     belief: Sight,
     /// The object in each gripper, and its pose in the frame of the end effector.
     held: Vec<Option<(String, Pose)>>,
-    /// The robot's name of each object, by id. Which of several objects that look the same is which, no picture tells.
-    names: BTreeMap<String, String>,
 }
 
 /// Does a task with the objects that the robot sees. It counts as done only if it is done in the world as it is.
@@ -74,12 +69,7 @@ fn stances(task: &Task, binding: &Binding, object: &ObjectSpec) -> Vec<Quat> {
     if !tips {
         return vec![own];
     }
-    let about_x = [0.0, FRAC_PI_2, -FRAC_PI_2, PI].map(|angle| (Vec3::X, angle));
-    let about_y = [FRAC_PI_2, -FRAC_PI_2].map(|angle| (Vec3::Y, angle));
-    let turns = about_x.into_iter().chain(about_y);
-    turns
-        .map(|(axis, angle)| turn_about(axis, angle) * own)
-        .collect()
+    sides(own).collect()
 }
 
 /// What the head camera shows: the picture, with the robot's own links as they are in it.
@@ -113,45 +103,14 @@ impl<'a> SeeingStage<'a> {
             body,
             observer,
             belief,
-            names: BTreeMap::new(),
         };
         stage.glance(None);
-        stage.names = stage.named_by_place();
         stage
     }
 
-    /// The world as it is, with the robot's names for objects that look the same.
+    /// The world as it is.
     pub fn truth(&self) -> Sight {
-        let mut truth = self.observer.sight().clone();
-        let objects = std::mem::take(&mut truth.objects);
-        let named = |id: String| self.names.get(&id).cloned().unwrap_or(id);
-        let objects = objects.into_iter();
-        truth.objects = objects.map(|(id, object)| (named(id), object)).collect();
-        truth
-    }
-
-    /// Names objects that look the same as the nearest ones that the robot has seen.
-    fn named_by_place(&self) -> BTreeMap<String, String> {
-        let truth = &self.observer.sight().objects;
-        let mut names = BTreeMap::new();
-        let mut free: Vec<_> = self.known.iter().collect();
-        for (id, known) in &self.known {
-            let Some(object) = truth.get(id) else {
-                continue;
-            };
-            let distance = |name: &str| {
-                let believed = self.belief.objects.get(name);
-                believed.map_or(f32::INFINITY, |it| {
-                    it.pose.location.distance(object.pose.location)
-                })
-            };
-            let alike = free.iter().enumerate().filter(|(_, it)| it.1 == *known);
-            let nearest = alike.min_by(|(_, a), (_, b)| distance(&a.0).total_cmp(&distance(&b.0)));
-            if let Some((place, _)) = nearest {
-                names.insert(id.clone(), free.remove(place).0.clone());
-            }
-        }
-        names
+        self.observer.sight().clone()
     }
 
     fn look_through_head_camera(&mut self) -> Option<HeadPicture> {
@@ -198,13 +157,20 @@ impl<'a> SeeingStage<'a> {
             figures: look.links,
             solids: solids.collect(),
         };
-        let objects = free.iter().map(|(_, known)| known.clone());
-        let mut eyes = Eyes::new(objects.collect(), look.camera, self.belief.table);
+        let objects = with_guides(&free, &self.belief.joints);
+        let mut eyes = Eyes::new(objects, look.camera, self.belief.table);
         eyes.remember(free.iter().map(|(name, _)| {
             let believed = self.belief.objects.get(name);
             believed.map(|it| it.pose)
         }));
-        let percept = eyes.look(&look.picture, &scenery);
+        let mut percept = eyes.look(&look.picture, &scenery);
+        if self.belief.objects.is_empty() {
+            // Which of several objects that look the same is which, no picture tells.
+            let truth = &self.observer.sight().objects;
+            let places = free.iter().map(|(id, _)| Some(truth.get(id)?.pose));
+            let places: Vec<_> = places.collect();
+            eyes.name_by_place(&places, &mut percept);
+        }
         let mut unseen = Vec::new();
         for ((name, known), seen) in free.iter().zip(percept.objects) {
             if sought.is_some_and(|sought| !sought.contains(name)) {
@@ -266,10 +232,7 @@ impl<'a> SeeingStage<'a> {
         self.belief.limbs.clone_from(limbs);
         for (number, limb) in limbs.iter().enumerate() {
             let end_effector = self.body.end_effector(number, &limb.angles);
-            let name = |id: &String| self.names.get(id).unwrap_or(id).clone();
-            let names: Vec<_> = limb.holds.iter().map(name).collect();
-            self.belief.limbs[number].holds.clone_from(&names);
-            let Some(name) = names.into_iter().next() else {
+            let Some(name) = limb.holds.first().cloned() else {
                 self.held[number] = None;
                 continue;
             };

@@ -1,6 +1,7 @@
 //! Poses of objects in pictures of random scenes.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod guided;
 mod scenes;
 
 use bevy::math::Vec3;
