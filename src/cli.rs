@@ -2,6 +2,7 @@
 
 mod allowed_paths;
 mod arguments;
+mod calibrate;
 mod check;
 mod completions;
 mod cut_off;

@@ -92,6 +92,7 @@ pub use tabletop_user as user;
 pub use tabletop_validation as validation;
 #[cfg(feature = "window")]
 pub use tabletop_view as view;
+pub use tabletop_vision as vision;
 pub use tabletop_xml as xml;
 
 pub mod cli;

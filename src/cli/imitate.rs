@@ -11,9 +11,10 @@ use crate::{
     TabletopSimPlugins,
     assembly::{IdAllocator, assemble},
     headless_app_with,
-    imitation::{AppStage, imitate_seeing, scattered_for},
+    imitation::{AppStage, SeeingStage, imitate_seeing, scattered_for},
     multiplication::with_colors_exchanged,
-    planner::{Doing, Imitation, RobotBody, imitate},
+    planner::{Before, Doing, Imitation, PlanningStage as _, RobotBody, imitate},
+    policy::{Policy, follow_policy, left_undone},
     recorder::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
         read_original,
@@ -21,12 +22,12 @@ use crate::{
     robot::RobotPlugin,
     robot_body, run_episodes, scene_at_beginning,
     shipped::read_faultless_task,
-    task::{Requirements, Task},
+    task::{Binding, Requirements, Task},
 };
 use bevy::prelude::*;
 use clap::Args;
 use tabletop_core::{
-    RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimTick, StepApp as _,
+    ObjectSpec, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimTick, StepApp as _,
     TICKS_PER_SECOND, WriteCommand as _,
 };
 
@@ -74,6 +75,9 @@ pub(super) struct ImitateArgs {
     /// Learn the task from the recording's pictures alone, too
     #[arg(long, requires = "eyes")]
     watch: bool,
+    /// Let this policy, which `tabletop learn` has made of the recording, decide what is moved where, by the pictures of the head camera
+    #[arg(long, value_name = "FILE")]
+    policy: Option<PathBuf>,
     #[command(flatten)]
     robot: RobotChoice,
     /// Record the robot; several trials get a folder each below this one
@@ -108,6 +112,8 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         let reason = "the recording moves nothing for good, so there is nothing to imitate";
         return Err(Failure::input(reason));
     }
+    let policy = args.policy.as_deref().map(Policy::read).transpose();
+    let policy = policy.map_err(Failure::input)?;
     let robot = args.robot.plugin()?;
     let hand_pictures = args.hand_cameras.of(&robot)?;
     let body = robot_body(&robot, &scene.table).map_err(Failure::run)?;
@@ -131,6 +137,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             hand_pictures: &hand_pictures,
             exchanges_colors: args.exchange_colors,
             has_eyes: args.eyes,
+            policy: policy.as_ref(),
             seed,
             folder,
         };
@@ -194,6 +201,7 @@ struct Attempt<'a> {
     hand_pictures: &'a HandPictures,
     exchanges_colors: bool,
     has_eyes: bool,
+    policy: Option<&'a Policy>,
     seed: Option<u64>,
     folder: Option<PathBuf>,
 }
@@ -241,30 +249,7 @@ impl Attempt<'_> {
             app.world_mut().write_command(RecordingCommand::Start);
             app.step(1);
         }
-        let tell = |doing: Doing| {
-            if is_reported {
-                let again = if doing.tries > 0 { " (again)" } else { "" };
-                let sentence = self
-                    .task
-                    .step(doing.step)
-                    .map(|step| step.sentence.as_str());
-                say(format_args!(
-                    "{}. {}{again}",
-                    doing.step,
-                    sentence.unwrap_or_default()
-                ));
-            }
-        };
-        let seed = self.seed.unwrap_or(0);
-        let imitation = match self.has_eyes {
-            true => imitate_seeing(
-                &mut app, self.body, self.task, &binding, &objects, seed, tell,
-            ),
-            false => {
-                let mut stage = AppStage::new(&mut app);
-                imitate(&mut stage, self.body, self.task, &binding, seed, tell)
-            }
-        };
+        let imitation = self.imitate(&mut app, &binding, &objects, is_reported);
         let report = recorded::finish(&mut app)?;
         let ticks = app.world().resource::<SimTick>().0;
         Ok(Trial {
@@ -274,6 +259,63 @@ impl Attempt<'_> {
             simulated: ticks as f64 / f64::from(TICKS_PER_SECOND),
             real: start.elapsed().as_secs_f64(),
         })
+    }
+}
+
+impl Attempt<'_> {
+    fn imitate(
+        &self,
+        app: &mut App,
+        binding: &Binding,
+        objects: &[ObjectSpec],
+        is_reported: bool,
+    ) -> Imitation {
+        let (task, seed) = (self.task, self.seed.unwrap_or(0));
+        let tell = |doing: Doing| {
+            if is_reported {
+                let again = if doing.tries > 0 { " (again)" } else { "" };
+                let sentence = task.step(doing.step).map(|step| step.sentence.as_str());
+                say(format_args!(
+                    "{}. {}{again}",
+                    doing.step,
+                    sentence.unwrap_or_default()
+                ));
+            }
+        };
+        let Some(policy) = self.policy else {
+            return match self.has_eyes {
+                true => imitate_seeing(app, self.body, task, binding, objects, seed, tell),
+                false => {
+                    let mut stage = AppStage::new(app);
+                    imitate(&mut stage, self.body, task, binding, seed, tell)
+                }
+            };
+        };
+        let tell_move = |number: usize, object: &str, to: Vec3| {
+            if is_reported {
+                let [x, y, z] = to.to_array();
+                say(format_args!(
+                    "{number}. Put {object} at ({x:.2}, {y:.2}, {z:.2})."
+                ));
+            }
+        };
+        let most = 2 * task.steps.len();
+        let before = Before::anything(AppStage::new(app).sight());
+        let mut imitation = match self.has_eyes {
+            true => {
+                let mut stage = SeeingStage::of_task(app, self.body, task, binding, objects);
+                follow_policy(policy, &mut stage, self.body, most, seed, tell_move)
+            }
+            false => {
+                let mut stage = AppStage::new(app);
+                follow_policy(policy, &mut stage, self.body, most, seed, tell_move)
+            }
+        };
+        if imitation.failure.is_none() {
+            let now = AppStage::new(app).sight().clone();
+            imitation.failure = left_undone(task, binding, objects, &before, &now);
+        }
+        imitation
     }
 }
 

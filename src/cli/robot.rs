@@ -13,7 +13,11 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
 use tabletop_kinematics::{ArmChain, ModelError, RobotModel, Target, Unreachable};
 
-use super::{Failure, Output, WRONG_INPUT, robot_options::describe};
+use super::{
+    Failure, Output, WRONG_INPUT,
+    calibrate::{CalibrateArgs, calibrate},
+    robot_options::describe,
+};
 
 #[derive(Args)]
 pub(super) struct RobotArgs {
@@ -30,10 +34,17 @@ enum Question {
     Fk,
     /// Print the joint angles that bring a hand to a pose, for poses from standard input
     Ik,
+    /// Print where the head camera is, by the edges of the table in its picture
+    Calibrate(CalibrateArgs),
 }
 
 /// Answers every line of standard input.
 pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
+    let question = match &args.question {
+        Question::Fk => Answerer::forward,
+        Question::Ik => Answerer::inverse,
+        Question::Calibrate(args) => return calibrate(args),
+    };
     let answerer = Answerer::new(args)?;
     let mut code = ExitCode::SUCCESS;
     let mut unreadable = false;
@@ -42,10 +53,7 @@ pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
         if line.trim_ascii().is_empty() {
             continue;
         }
-        let answer = match args.question {
-            Question::Fk => answerer.forward(&line),
-            Question::Ik => answerer.inverse(&line),
-        };
+        let answer = question(&answerer, &line);
         let answer = answer.unwrap_or_else(|fault| match fault {
             NoAnswer::Input(message) => {
                 unreadable = true;

@@ -7,10 +7,12 @@ use std::{
 };
 
 use crate::{
+    camera::Camera,
     recorder::{RecorderError, RecordingReader, read_picture},
     shipped::read_faultless_task,
     storage::Storage,
     task::{Demonstration, Requirements, Task},
+    vision::calibrated,
     watching::Watcher,
 };
 use clap::Args;
@@ -21,6 +23,7 @@ use tabletop_geometry::Pose;
 use super::{
     Failure,
     allowed_paths::AllowedPaths,
+    calibrate::taking,
     cut_off::say_if_cut_off,
     explain::{furniture, print, reported},
     range::NumberRange,
@@ -42,6 +45,9 @@ pub(super) struct WatchArgs {
     /// Pictures per second, from 1 to 60, of a folder that is no recording
     #[arg(long, value_name = "N", value_parser = RATE, default_value_t = 4, allow_negative_numbers = true)]
     rate: u64,
+    /// Find where the camera is by the edges of the table in the first picture, if it is some centimetres from where it is thought to be
+    #[arg(long)]
+    calibrate: bool,
     /// Print everything that was understood as JSON
     #[arg(long)]
     json: bool,
@@ -83,7 +89,7 @@ pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
         true => PictureRoll::of_recording(&args.folder, setup)?,
         false => PictureRoll::of_pictures(&args.folder, pictures, setup, args.rate)?,
     };
-    let watched = roll.watch()?;
+    let watched = roll.watch(args.calibrate)?;
     let mut task = Task::of(&watched.demonstration);
     task.phrase(&Requirements::default());
     if args.json {
@@ -102,7 +108,7 @@ pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
 
 /// The task that the pictures of a recording show, with its requirements in its sentences.
 pub(super) fn read_watched(recording: &Path) -> Result<(Task, Requirements), Failure> {
-    let watched = PictureRoll::of_recording(recording, None)?.watch()?;
+    let watched = PictureRoll::of_recording(recording, None)?.watch(false)?;
     let mut task = Task::of(&watched.demonstration);
     let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
     task.phrase(&requirements);
@@ -169,12 +175,17 @@ impl PictureRoll {
                 folder.display()
             )));
         };
+        let first = pictures.first().map(|path| read_picture(path));
+        let first = first
+            .transpose()
+            .map_err(Failure::input)?
+            .unwrap_or_default();
         let step = u64::from(TICKS_PER_SECOND) / rate;
         let pictures = pictures.into_iter().zip(0..);
         let frames = pictures.map(|(path, number)| (SimTick(number * step), path));
         Ok(Self {
             table,
-            camera: HeadCamera::default(),
+            camera: taking(&HeadCamera::default(), &first),
             objects,
             joints,
             frames: frames.collect(),
@@ -186,11 +197,30 @@ impl PictureRoll {
     ///
     /// # Errors
     /// One cannot be read.
-    fn watch(self) -> Result<WatchedRoll, Failure> {
-        let mut watcher = Watcher::new(self.objects, self.joints, self.table, &self.camera);
+    fn watch(self, is_calibrated: bool) -> Result<WatchedRoll, Failure> {
+        let mut camera = Camera::of_head(&self.camera, &self.table);
+        if let (true, Some((_, path))) = (is_calibrated, self.frames.first()) {
+            let picture = read_picture(path).map_err(Failure::input)?;
+            camera = calibrated(&picture, &camera, &self.table);
+        }
+        let mut watcher = Watcher::new(self.objects, self.joints, self.table, camera);
         let mut errors = Vec::new();
         for (number, (tick, path)) in self.frames.iter().enumerate() {
             let picture = read_picture(path).map_err(Failure::input)?;
+            let [size, expected] = [
+                [picture.width, picture.height],
+                [self.camera.width, self.camera.height],
+            ];
+            if size != expected {
+                return Err(Failure::input(format!(
+                    "{}: the picture has {} x {} pixels, and the camera {} x {}",
+                    path.display(),
+                    size[0],
+                    size[1],
+                    expected[0],
+                    expected[1],
+                )));
+            }
             watcher.watch(*tick, &picture);
             if let Some(truth) = self.truth.get(number) {
                 let distances = watcher.poses().filter_map(|(id, pose)| {

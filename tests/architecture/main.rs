@@ -200,9 +200,11 @@ const RULES: [Rule; 41] = [
         "tabletop_policy",
         &[
             "tabletop_camera",
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_episodes",
             "tabletop_geometry",
+            "tabletop_planner",
             "tabletop_storage",
             "tabletop_task",
         ],
@@ -340,6 +342,7 @@ const RULES: [Rule; 41] = [
             "tabletop_user",
             "tabletop_validation",
             "tabletop_view",
+            "tabletop_vision",
             "tabletop_gui",
         ],
     )

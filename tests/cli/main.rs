@@ -19,6 +19,7 @@ mod language;
 mod man;
 mod multiply;
 mod originals;
+mod policy;
 mod ranges;
 mod replay;
 mod report;

@@ -3,6 +3,7 @@
 use std::fs;
 
 use serde_json::Value;
+use tabletop::{core::Picture, film::Canvas, recorder::read_picture};
 
 use crate::support::{place, record_shipped, stderr, stdout, tabletop};
 
@@ -21,7 +22,15 @@ fn seen(arguments: &[&str]) -> String {
 
 #[test]
 fn pictures_show_the_same_tasks_as_recordings() {
-    for scenario in ["stack_three", "swap", "wall", "letter_u", "hanoi"] {
+    for scenario in [
+        "stack_three",
+        "swap",
+        "wall",
+        "letter_u",
+        "hanoi",
+        "chest",
+        "stand_up",
+    ] {
         let demo = recorded(scenario, "tasks");
         assert_eq!(seen(&[&demo]), stdout(&tabletop(&["explain", &demo])));
     }
@@ -91,4 +100,59 @@ fn the_robot_does_what_it_sees() {
         stdout(&output)
     );
     assert!(!tabletop(&["imitate", &demo, "--watch"]).status.success());
+}
+
+#[test]
+fn pictures_of_another_size_are_watched_and_none_may_differ() {
+    let demo = recorded("stack_three", "size");
+    let pictures = place("watch_sizes");
+    fs::create_dir_all(&pictures).unwrap();
+    let small = read_picture(format!("{demo}/0/0.png").as_ref()).unwrap();
+    let (width, height) = (2 * small.width, 2 * small.height);
+    let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column / 2, row / 2)));
+    let large = Picture {
+        width,
+        height,
+        rgb: pixels
+            .flat_map(|(column, row)| small.color(column, row).unwrap())
+            .collect(),
+        depth: vec![0.0; (width * height) as usize],
+        objects: vec![0; (width * height) as usize],
+    };
+    let large = Canvas::of(&large).png().unwrap();
+    for number in 0..3 {
+        fs::write(pictures.join(format!("{number}.png")), &large).unwrap();
+    }
+    let setup = ["--setup", "tablesetup/blocks.xml"];
+    let folder = pictures.to_str().unwrap();
+    let output = tabletop(&[&["watch", folder], &setup[..]].concat());
+    assert_eq!(stdout(&output), "Nothing is moved for good.\n");
+    assert_eq!(stderr(&output), "");
+    fs::copy(format!("{demo}/0/0.png"), pictures.join("3.png")).unwrap();
+    let output = tabletop(&[&["watch", folder], &setup[..]].concat());
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains("3.png: the picture has 200 x 150 pixels"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_camera_that_was_bumped_is_found() {
+    let demo = recorded("stack_three", "bumped");
+    let picture = format!("{demo}/0/0.png");
+    let output = tabletop(&["robot", "calibrate", &picture]);
+    let found: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let off = |name: &str| found["off"][name].as_f64().unwrap();
+    // Nobody has bumped it.
+    assert!(off("units") < 0.15 && off("degrees") < 1.0, "{found}");
+    assert_eq!(seen(&[&demo, "--calibrate"]), seen(&[&demo]));
+    let output = tabletop(&["robot", "calibrate", "nowhere.png"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("nowhere.png"),
+        "{}",
+        stderr(&output)
+    );
 }

@@ -1,7 +1,9 @@
 //! The simulator as a stage on which the robot imitates.
 
+mod head_picture;
 mod seeing;
 
+pub use head_picture::{HeadCameraStage, HeadPicture};
 pub use seeing::{SeeingStage, imitate_seeing};
 
 use bevy::prelude::*;
@@ -41,6 +43,12 @@ impl PlanningStage for AppStage<'_> {
         advance(self.app, orders);
         self.observer.look(self.app.world_mut());
         Ok(())
+    }
+}
+
+impl HeadCameraStage for AppStage<'_> {
+    fn head_picture(&mut self) -> Option<HeadPicture> {
+        head_picture::head_picture(self.app)
     }
 }
 

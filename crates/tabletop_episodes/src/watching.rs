@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use bevy::math::{Quat, Vec3};
 use tabletop_camera::Camera;
-use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Picture, SimTick, Table};
+use tabletop_core::{JointSpec, ObjectSpec, Picture, SimTick, Table};
 use tabletop_geometry::{Pose, turn_about};
 use tabletop_task::{Demonstration, Track, angle_between};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept};
@@ -39,9 +39,8 @@ impl Watcher {
         objects: Vec<ObjectSpec>,
         joints: Vec<JointSpec>,
         table: Table,
-        camera: &HeadCamera,
+        camera: Camera,
     ) -> Self {
-        let camera = Camera::of_head(camera, &table);
         let described = known_objects(&objects, &joints, |own| vec![own]);
         let known = known_objects(&objects, &joints, |own| sides(own).collect());
         let watched = objects.into_iter().zip(&known);
@@ -138,7 +137,7 @@ pub(crate) fn sides(own: Quat) -> impl Iterator<Item = Quat> {
     let about_x = [0.0, FRAC_PI_2, -FRAC_PI_2, PI].map(|angle| (Vec3::X, angle));
     let about_y = [FRAC_PI_2, -FRAC_PI_2].map(|angle| (Vec3::Y, angle));
     let turns = about_x.into_iter().chain(about_y);
-    turns.map(move |(axis, angle)| turn_about(axis, angle) * own)
+    turns.map(move |(axis, angle)| own * turn_about(axis, angle))
 }
 
 /// Objects by id, as eyes know them that know the joints between them, too.
@@ -169,6 +168,24 @@ impl Watched {
         if !self.pose.is_some_and(is_still) {
             self.track.push(tick, pose);
             self.pose = Some(pose);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_object_stands_on_a_side_of_its_own() {
+        let own = turn_about(Vec3::Z, 0.3);
+        let up = |side: Quat| side.inverse() * Vec3::Z;
+        let ups: Vec<_> = sides(own).map(up).collect();
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            for way in [axis, -axis] {
+                let down = ups.iter().filter(|up| up.distance(way) < 1e-6);
+                assert_eq!(down.count(), 1, "{way}");
+            }
         }
     }
 }

@@ -50,6 +50,10 @@ pub enum PlanFailure {
     Misplaced(String),
     /// The demonstration does not show where the object belongs.
     NoGoal(String),
+    /// Something was to be taken where nothing is.
+    NothingThere,
+    /// Ever more was to be done.
+    Endless,
     /// The robot was stopped from outside.
     Stopped,
 }
@@ -78,6 +82,8 @@ impl PlanFailure {
             | Self::NoRoom(_)
             | Self::Misplaced(_)
             | Self::NoGoal(_)
+            | Self::NothingThere
+            | Self::Endless
             | Self::Stopped => false,
         }
     }
@@ -98,6 +104,8 @@ impl PlanFailure {
             | Self::NoRoom(_)
             | Self::Misplaced(_)
             | Self::NoGoal(_)
+            | Self::NothingThere
+            | Self::Endless
             | Self::Stopped => 5,
         };
         match progress(&later) >= progress(&self) {
@@ -119,6 +127,8 @@ impl PlanFailure {
             | Self::NoRoom(_)
             | Self::Gone(_)
             | Self::NoGoal(_)
+            | Self::NothingThere
+            | Self::Endless
             | Self::Stopped => true,
             Self::NoWay(_) | Self::NotHeld(_) | Self::Blocked { .. } | Self::Misplaced(_) => false,
         }
@@ -141,6 +151,8 @@ impl PlanFailure {
             Self::NoRoom(_) => "no room",
             Self::Misplaced(_) => "misplaced",
             Self::NoGoal(_) => "no goal",
+            Self::NothingThere => "nothing there",
+            Self::Endless => "endless",
             Self::Stopped => "stopped",
         }
     }
@@ -192,6 +204,8 @@ impl fmt::Display for PlanFailure {
                 f,
                 "{object} was let go in the air, so the demonstration does not show where it belongs"
             ),
+            Self::NothingThere => write!(f, "something was to be taken where nothing is"),
+            Self::Endless => write!(f, "there was always something more to be done"),
             Self::Stopped => write!(f, "the robot was stopped"),
         }
     }

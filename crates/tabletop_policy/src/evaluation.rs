@@ -5,6 +5,7 @@ use std::fmt;
 
 use bevy::math::Quat;
 use tabletop_camera::Rasterizer;
+use tabletop_core::ObjectSpec;
 use tabletop_episodes::multiplication::VariedBeginning;
 use tabletop_geometry::{Pose, turn_about_z};
 use tabletop_task::{Arrangement, Binding, Symmetry, Task};
@@ -51,7 +52,7 @@ impl fmt::Display for PolicyFailure {
 }
 
 /// The largest distance, in units, between an object's origin and the place where a hand that takes it should find it.
-const GRASP: f32 = 0.5;
+pub(crate) const GRASP: f32 = 0.5;
 /// The largest distance, in units, between where an object is in the end and where it should be: within a quarter of a block's width, a block stands on another.
 const TOLERANCE: f32 = 0.25;
 /// Most objects that look alike whose roles are exchanged.
@@ -90,13 +91,16 @@ impl Policy {
         rasterizer: &mut Rasterizer,
         evaluation: &mut Evaluation,
     ) -> Result<(), PolicyFailure> {
-        let bindings = bindings(task, beginning);
+        let bindings = bindings(task, &beginning.binding, &beginning.objects);
         for _ in 0..=2 * task.steps.len() {
             let picture = scene.picture(rasterizer);
             match self.decide(&picture, &scene.camera) {
                 Decision::Move { pick, place } => {
                     let (id, pose, off) = taken(&scene, pick).ok_or(PolicyFailure::TookNothing)?;
-                    scene.put(&id, pose_at(&scene, &id, pose, place));
+                    let object = scene.objects.iter().find(|object| object.id == id);
+                    let symmetry = object.map(|object| Symmetry::of(&object.shape));
+                    let symmetry = symmetry.unwrap_or_else(Symmetry::none);
+                    scene.put(&id, pose_at(&symmetry, pose, place));
                     evaluation.pick_errors.push(off);
                     evaluation.moves += 1;
                 }
@@ -122,12 +126,9 @@ fn taken(scene: &StillScene, pick: ObjectPlace) -> Option<(String, Pose, f32)> {
     nearest.filter(|(.., off)| *off <= GRASP)
 }
 
-/// The pose of an object at a place: turned as little as makes it look as it should.
-fn pose_at(scene: &StillScene, id: &str, pose: Pose, place: ObjectPlace) -> Pose {
-    let mut objects = scene.objects.iter();
-    let object = objects.find(|object| object.id == id);
-    let symmetry = object.map_or_else(Symmetry::none, |object| Symmetry::of(&object.shape));
-    let turn = heading(&symmetry, pose).yaw().zip(place.yaw);
+/// The pose of an object that is brought to a place: turned as little as makes it look as it should.
+pub(crate) fn pose_at(symmetry: &Symmetry, pose: Pose, place: ObjectPlace) -> Pose {
+    let turn = heading(symmetry, pose).yaw().zip(place.yaw);
     let turn = turn.map_or(0.0, |(now, wanted)| {
         let period = std::f32::consts::TAU / now.fold as f32;
         let turn = wanted.angle - now.angle;
@@ -138,17 +139,18 @@ fn pose_at(scene: &StillScene, id: &str, pose: Pose, place: ObjectPlace) -> Pose
 }
 
 /// The ways in which objects can take the roles: those that look alike, and carry nothing at first, can take each other's.
-fn bindings(task: &Task, beginning: &VariedBeginning) -> Vec<Binding> {
-    let object = |id: &str| beginning.objects.iter().find(|object| object.id == id);
-    let objects = beginning.objects.iter();
-    let arrangement =
-        Arrangement::new(objects.map(|object| (object.id.as_str(), &object.shape, object.pose)));
+pub(crate) fn bindings(task: &Task, binding: &Binding, objects: &[ObjectSpec]) -> Vec<Binding> {
+    let object = |id: &str| objects.iter().find(|object| object.id == id);
+    let arrangement = objects.iter();
+    let arrangement = Arrangement::new(
+        arrangement.map(|object| (object.id.as_str(), &object.shape, object.pose)),
+    );
     let free = |id: &str| arrangement.standing_on(id).is_empty();
-    let mut bindings = vec![beginning.binding.clone()];
+    let mut bindings = vec![binding.clone()];
     for (i, role) in task.roles.iter().enumerate() {
         let later = task.roles[i + 1..].iter().take(MOST_ALIKE);
         for other in later {
-            let pair = [&role.id, &other.id].map(|role| beginning.binding.object(role));
+            let pair = [&role.id, &other.id].map(|role| binding.object(role));
             let [Some(one), Some(two)] = pair else {
                 continue;
             };

@@ -22,6 +22,7 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod acting;
 mod adam;
 mod convolution;
 mod curriculum;
@@ -40,6 +41,7 @@ mod test_recording;
 mod training;
 mod unet;
 
+pub use acting::{follow_policy, left_undone};
 pub use curriculum::Curriculum;
 pub use error::PolicyError;
 pub use evaluation::{Evaluation, PolicyFailure};

@@ -32,6 +32,20 @@ pub struct Task {
 }
 
 impl Task {
+    /// Nothing to be done on a table.
+    pub const fn without_steps(table: Table) -> Self {
+        Self {
+            table,
+            roles: Vec::new(),
+            joints: Vec::new(),
+            steps: Vec::new(),
+            detours: Vec::new(),
+            pushes: Vec::new(),
+            operations: Vec::new(),
+            vocabulary: BTreeMap::new(),
+        }
+    }
+
     /// The role with this id.
     pub fn role(&self, id: &str) -> Option<&Role> {
         self.roles.iter().find(|role| role.id == id)

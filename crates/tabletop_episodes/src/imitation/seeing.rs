@@ -3,13 +3,11 @@
 use std::collections::BTreeMap;
 
 use bevy::{math::Quat, prelude::*};
-use tabletop_camera::{
-    Camera, DrawnFigure, DrawnSolid, FiguresSeen, Rasterizer, Scene, VisibleWorld,
-};
+use tabletop_camera::{Camera, DrawnSolid};
 use tabletop_controller::{Observer, SeenObject, Sight};
 use tabletop_core::{
-    Drive, HeadCamera, ObjectSpec, Picture, Robot, RobotCommand, RobotLayout, StepApp as _,
-    TICK_SECONDS, WriteCommand as _,
+    Drive, HeadCamera, ObjectSpec, Robot, RobotCommand, RobotLayout, StepApp as _, TICK_SECONDS,
+    WriteCommand as _,
 };
 use tabletop_geometry::Pose;
 use tabletop_planner::{
@@ -18,7 +16,10 @@ use tabletop_planner::{
 use tabletop_task::{Binding, Task};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, Visibility};
 
-use super::advance;
+use super::{
+    advance,
+    head_picture::{HeadCameraStage, HeadPicture, head_picture},
+};
 use crate::watching::{known_object, sides, with_guides};
 
 /// Angle, in rad, by which the head turns for what is beside the picture.
@@ -51,7 +52,7 @@ pub fn imitate_seeing(
     seed: u64,
     tell: impl FnMut(Doing),
 ) -> Imitation {
-    let mut stage = SeeingStage::new(app, body, objects, |object| stances(task, binding, object));
+    let mut stage = SeeingStage::of_task(app, body, task, binding, objects);
     let before = Before::anything(&stage.truth());
     let mut imitation = imitate(&mut stage, body, task, binding, seed, tell);
     if imitation.failure.is_none() {
@@ -72,14 +73,18 @@ fn stances(task: &Task, binding: &Binding, object: &ObjectSpec) -> Vec<Quat> {
     sides(own).collect()
 }
 
-/// What the head camera shows: the picture, with the robot's own links as they are in it.
-struct HeadPicture {
-    camera: Camera,
-    picture: Picture,
-    links: Vec<DrawnFigure>,
-}
-
 impl<'a> SeeingStage<'a> {
+    /// The app, whose robot has looked at these objects, and knows which of them the task tips onto another side.
+    pub fn of_task(
+        app: &'a mut App,
+        body: &'a RobotBody,
+        task: &Task,
+        binding: &Binding,
+        objects: &[ObjectSpec],
+    ) -> Self {
+        Self::new(app, body, objects, |object| stances(task, binding, object))
+    }
+
     /// The app, whose robot has looked at these objects. Each of them stands in one of the ways, rotations of the object, that `stances` tells for it, turned
     /// about the vertical by any angle.
     pub fn new(
@@ -113,32 +118,10 @@ impl<'a> SeeingStage<'a> {
         self.observer.sight().clone()
     }
 
-    fn look_through_head_camera(&mut self) -> Option<HeadPicture> {
-        let look =
-            self.app
-                .world_mut()
-                .run_system_cached(|head: Res<HeadCamera>, world: VisibleWorld| {
-                    let mut scene = Scene::default();
-                    world.draw(FiguresSeen::FromHead, &mut scene, &mut Vec::new());
-                    let camera = Camera::of_head(&head, &world.table());
-                    let mut picture = Picture::default();
-                    Rasterizer::default().draw(&scene, &camera, &mut picture);
-                    // Colours are all that it sees.
-                    picture.depth.fill(0.0);
-                    picture.objects.fill(0);
-                    HeadPicture {
-                        camera,
-                        picture,
-                        links: scene.figures,
-                    }
-                });
-        look.ok()
-    }
-
     /// Looks at the picture that the head camera shows now. Believes what it sees of these objects, or of all, and returns the names of those that it does not
     /// see well enough.
     fn glance(&mut self, sought: Option<&[String]>) -> Vec<String> {
-        let Some(look) = self.look_through_head_camera() else {
+        let Some(look) = self.head_picture() else {
             return Vec::new();
         };
         let (held, free): (Vec<_>, Vec<_>) = self
@@ -267,6 +250,12 @@ impl<'a> SeeingStage<'a> {
             };
             self.belief.objects.insert(name.to_owned(), seen);
         }
+    }
+}
+
+impl HeadCameraStage for SeeingStage<'_> {
+    fn head_picture(&mut self) -> Option<HeadPicture> {
+        head_picture(self.app)
     }
 }
 
