@@ -70,6 +70,7 @@ pub use tabletop_history as history;
 pub use tabletop_kinematics as kinematics;
 pub use tabletop_mechanism as mechanism;
 pub use tabletop_mesh as mesh;
+pub use tabletop_perception as perception;
 pub use tabletop_physics as physics;
 pub use tabletop_planner as planner;
 pub use tabletop_policy as policy;

@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 41] = [
+const RULES: [Rule; 42] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -96,6 +96,7 @@ const RULES: [Rule; 41] = [
         &[
             "tabletop_core",
             "tabletop_geometry",
+            "tabletop_perception",
             "tabletop_engine",
             "tabletop_storage",
         ],
@@ -151,6 +152,7 @@ const RULES: [Rule; 41] = [
             "tabletop_demonstrator",
             "tabletop_history",
             "tabletop_mechanism",
+            "tabletop_perception",
             "tabletop_physics",
             "tabletop_recorder",
             "tabletop_robot",
@@ -193,6 +195,15 @@ const RULES: [Rule; 41] = [
             "tabletop_sim",
             "tabletop_storage",
             "tabletop_task",
+            "tabletop_vision",
+        ],
+    ),
+    Rule::new(
+        "tabletop_perception",
+        &[
+            "tabletop_camera",
+            "tabletop_core",
+            "tabletop_geometry",
             "tabletop_vision",
         ],
     ),
@@ -299,8 +310,10 @@ const RULES: [Rule; 41] = [
     Rule::new(
         "tabletop_gui",
         &[
+            "tabletop_camera",
             "tabletop_core",
             "tabletop_geometry",
+            "tabletop_perception",
             "tabletop_storage",
             "tabletop_user",
         ],
@@ -342,6 +355,7 @@ const RULES: [Rule; 41] = [
             "tabletop_user",
             "tabletop_validation",
             "tabletop_view",
+            "tabletop_perception",
             "tabletop_vision",
             "tabletop_gui",
         ],

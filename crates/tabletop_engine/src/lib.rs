@@ -84,5 +84,7 @@ pub use variables::{
     invalid_field::{InvalidField, MatrixElement},
     matrix::JointMatrix,
     motor::MotorCommand,
-    sensor::{RgbImage, SensedContact, SensedControl, SensedObject, SensedStep, Sensor},
+    sensor::{
+        RgbImage, SensedBelief, SensedContact, SensedControl, SensedObject, SensedStep, Sensor,
+    },
 };

@@ -1,13 +1,11 @@
 //! Watching: a demonstration, from the pictures of the head camera alone.
 
-use std::f32::consts::{FRAC_PI_2, PI};
-
-use bevy::math::{Quat, Vec3};
+use bevy::math::Quat;
 use tabletop_camera::Camera;
 use tabletop_core::{JointSpec, ObjectSpec, Picture, SimTick, Table};
-use tabletop_geometry::{Pose, turn_about};
+use tabletop_geometry::Pose;
 use tabletop_task::{Demonstration, Track, angle_between};
-use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept};
+use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, with_guides};
 
 /// The largest displacement, in units, and the largest turn, in rad, of an object between two pictures that is an error of the eyes and no motion.
 const STILL: (f32, f32) = (0.02, 0.03);
@@ -41,8 +39,8 @@ impl Watcher {
         table: Table,
         camera: Camera,
     ) -> Self {
-        let described = known_objects(&objects, &joints, |own| vec![own]);
-        let known = known_objects(&objects, &joints, |own| sides(own).collect());
+        let described = known_objects(&objects, &joints, |known, own| known.standing([own]));
+        let known = known_objects(&objects, &joints, KnownObject::on_any_side);
         let watched = objects.into_iter().zip(&known);
         let watched = watched.map(|(spec, known)| Watched {
             known: known.clone(),
@@ -107,52 +105,26 @@ impl Watcher {
     }
 }
 
-/// What eyes know of an object that stands in one of these ways: rotations of it, each turned about the vertical by any angle.
-pub(crate) fn known_object(
-    spec: &ObjectSpec,
-    stances: impl IntoIterator<Item = Quat>,
-) -> KnownObject {
-    let known = KnownObject::of(&spec.shape).standing(stances);
+/// What eyes know of an object.
+pub(crate) fn known_object(spec: &ObjectSpec) -> KnownObject {
+    let known = KnownObject::of(&spec.shape);
     match spec.is_fixed() {
         true => known.fixed(),
         false => known,
     }
 }
 
-/// What eyes know of objects that stand in some of these ways, by their own rotations.
+/// What eyes know of objects that stand in some way, by their rotations.
 fn known_objects(
     objects: &[ObjectSpec],
     joints: &[JointSpec],
-    stances: impl Fn(Quat) -> Vec<Quat>,
+    standing: impl Fn(KnownObject, Quat) -> KnownObject,
 ) -> Vec<KnownObject> {
     let known = objects.iter().map(|spec| {
-        let known = known_object(spec, stances(spec.pose.rotation));
+        let known = standing(known_object(spec), spec.pose.rotation);
         (spec.id.clone(), known)
     });
     with_guides(&known.collect::<Vec<_>>(), joints)
-}
-
-/// The rotations of an object that stands on each of its sides, as it stands in one of them first.
-pub(crate) fn sides(own: Quat) -> impl Iterator<Item = Quat> {
-    let about_x = [0.0, FRAC_PI_2, -FRAC_PI_2, PI].map(|angle| (Vec3::X, angle));
-    let about_y = [FRAC_PI_2, -FRAC_PI_2].map(|angle| (Vec3::Y, angle));
-    let turns = about_x.into_iter().chain(about_y);
-    turns.map(move |(axis, angle)| own * turn_about(axis, angle))
-}
-
-/// Objects by id, as eyes know them that know the joints between them, too.
-pub(crate) fn with_guides(
-    objects: &[(String, KnownObject)],
-    joints: &[JointSpec],
-) -> Vec<KnownObject> {
-    let mut known: Vec<_> = objects.iter().map(|(_, known)| known.clone()).collect();
-    let number = |id: &String| objects.iter().position(|(own, _)| own == id);
-    for joint in joints {
-        if let [Some(first), Some(second)] = joint.objects.each_ref().map(number) {
-            known[second] = known[second].clone().guided(first, joint);
-        }
-    }
-    known
 }
 
 impl Watched {
@@ -168,24 +140,6 @@ impl Watched {
         if !self.pose.is_some_and(is_still) {
             self.track.push(tick, pose);
             self.pose = Some(pose);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_turned_object_stands_on_a_side_of_its_own() {
-        let own = turn_about(Vec3::Z, 0.3);
-        let up = |side: Quat| side.inverse() * Vec3::Z;
-        let ups: Vec<_> = sides(own).map(up).collect();
-        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
-            for way in [axis, -axis] {
-                let down = ups.iter().filter(|up| up.distance(way) < 1e-6);
-                assert_eq!(down.count(), 1, "{way}");
-            }
         }
     }
 }

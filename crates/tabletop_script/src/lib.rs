@@ -75,6 +75,7 @@ use tabletop_core::{
     HeadCamera, ObjectIndex, OrderSystems, Paused, PictureDemand, RestApp as _, RestingSystems,
     SensorImage, SimBlocked,
 };
+use tabletop_perception::{Perception, PerceptionDemand};
 
 use blocked::{drop_overstep, keep_messages, try_again};
 use runner::{ScriptRunner, call, is_running};
@@ -100,6 +101,8 @@ impl Plugin for ScriptPlugin {
             .init_resource::<ObjectIndex>()
             .init_resource::<PictureDemand>()
             .init_resource::<SensorImage>()
+            .init_resource::<Perception>()
+            .init_resource::<PerceptionDemand>()
             .add_systems(
                 FixedUpdate,
                 (

@@ -8,9 +8,11 @@ use tabletop_core::{
     RobotMode, SensorImage, ShownTask, SimTick, TICK_SECONDS, Table,
 };
 use tabletop_engine::{
-    Aux, JointMatrix, RgbImage, SensedContact, SensedControl, SensedObject, SensedStep, Sensor,
+    Aux, JointMatrix, RgbImage, SensedBelief, SensedContact, SensedControl, SensedObject,
+    SensedStep, Sensor,
 };
 use tabletop_geometry::Pose;
+use tabletop_perception::{PerceivedObject, Perception};
 
 use crate::{ScriptSettings, mentions::mention};
 
@@ -20,6 +22,7 @@ pub(crate) struct SensorFields {
     objects: bool,
     controls: bool,
     trackers: bool,
+    pub seen: bool,
     task: bool,
 }
 
@@ -31,6 +34,7 @@ impl SensorFields {
             objects: settings.objects.holds_for(agent, objects),
             controls: settings.objects.holds_for(agent, &["controls"]),
             trackers: settings.trackers.holds_for(agent, &["trackerLoc"]),
+            seen: mention(agent, &["seen"]),
             task: mention(agent, &["task"]),
         }
     }
@@ -48,6 +52,7 @@ pub(crate) struct Senses<'w, 's> {
     recording: Res<'w, Recording>,
     replaying: Res<'w, Replaying>,
     task: Res<'w, ShownTask>,
+    perception: Res<'w, Perception>,
 }
 
 impl Senses<'_, '_> {
@@ -98,6 +103,7 @@ impl Senses<'_, '_> {
             demo_cue: self.recording.0 || self.replaying.0,
             head_angle: self.layout.neck.map(|neck| self.state(neck).position),
             objects: fields.objects.then(|| self.objects()),
+            seen: (fields.seen && !self.perception.objects.is_empty()).then(|| self.beliefs()),
             contacts: fields.objects.then(|| self.contacts()),
             held: fields.objects.then(|| self.held()),
             controls: fields.controls.then(|| self.controls()),
@@ -156,6 +162,25 @@ impl Senses<'_, '_> {
                 }
             })
             .collect()
+    }
+
+    fn beliefs(&self) -> Vec<SensedBelief> {
+        let beliefs = self.perception.objects.iter();
+        let beliefs = beliefs.map(|PerceivedObject { id, seen, .. }| {
+            let place = seen.pose.map(|pose| {
+                let degrees = pose.degrees().to_array().map(f64::from);
+                (point(pose.location), degrees.map(f64::to_radians))
+            });
+            let (position, rotation) = place.unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
+            SensedBelief {
+                id: id.clone(),
+                position,
+                rotation,
+                deviation: point(seen.deviation.location),
+                is_sure: seen.is_sure,
+            }
+        });
+        beliefs.collect()
     }
 
     fn controls(&self) -> Vec<SensedControl> {

@@ -229,6 +229,9 @@ impl ScriptSession {
         let ticks = simulation.tick.0.saturating_sub(self.began_at.0);
         if ticks.is_multiple_of(simulation.settings.ticks_per_picture.max(1)) {
             simulation.demand.ask();
+            if self.fields.seen {
+                simulation.perception.ask();
+            }
             self.picture = Some(*simulation.tick);
         }
     }

@@ -2,6 +2,7 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{Agent, CommandWriter, PictureDemand, SimBlocked, SimTick};
+use tabletop_perception::PerceptionDemand;
 
 use crate::{events::ScriptEvents, sense::Senses, settings::ScriptSettings};
 
@@ -12,6 +13,7 @@ pub(crate) struct Simulation<'w, 's> {
     pub tick: Res<'w, SimTick>,
     pub senses: Senses<'w, 's>,
     pub demand: Res<'w, PictureDemand>,
+    pub perception: Res<'w, PerceptionDemand>,
     pub agent: ResMut<'w, Agent>,
     pub blocked: ResMut<'w, SimBlocked>,
     pub commands: CommandWriter<'w>,

@@ -8,6 +8,7 @@ use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_drive::DrivePlugin;
 use tabletop_history::HistoryPlugin;
 use tabletop_mechanism::MechanismPlugin;
+use tabletop_perception::PerceptionPlugin;
 use tabletop_physics::PhysicsPlugin;
 use tabletop_recorder::RecorderPlugin;
 use tabletop_robot::RobotPlugin;
@@ -19,7 +20,7 @@ use tabletop_xml::XmlPlugin;
 use crate::{reset::ResetPlugin, settings::RecordedSettingsPlugin, shipped::ShippedFilesPlugin};
 
 /// The simulator without display: [`CorePlugin`], [`HistoryPlugin`], [`XmlPlugin`], [`PhysicsPlugin`], [`ScenePlugin`],
-/// [`DemonstratorPlugin`], [`MechanismPlugin`], [`RobotPlugin`], [`DrivePlugin`], [`CameraPlugin`], [`ControllerPlugin`], [`RecorderPlugin`],
+/// [`DemonstratorPlugin`], [`MechanismPlugin`], [`RobotPlugin`], [`DrivePlugin`], [`CameraPlugin`], [`PerceptionPlugin`], [`ControllerPlugin`], [`RecorderPlugin`],
 /// [`ScriptPlugin`], [`ScenarioPlugin`], [`RecordedSettingsPlugin`], [`ShippedFilesPlugin`] and [`ResetPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
@@ -37,6 +38,7 @@ impl PluginGroup for TabletopSimPlugins {
             .add(RobotPlugin::default())
             .add(DrivePlugin)
             .add(CameraPlugin)
+            .add(PerceptionPlugin)
             .add(ControllerPlugin)
             .add(RecorderPlugin::default())
             .add(ScriptPlugin::default())

@@ -126,6 +126,11 @@ impl Eyes {
         }
     }
 
+    /// Where the objects were last seen.
+    pub fn remembered(&self) -> impl Iterator<Item = Option<Pose>> {
+        self.poses.iter().copied()
+    }
+
     /// Exchanges what was last seen of objects that look the same, so that each is as near as possible to one of these places.
     pub fn name_by_place(&mut self, places: &[Option<Pose>], percept: &mut Percept) {
         keep_identities(&self.objects, places, &mut percept.objects, |seen| {

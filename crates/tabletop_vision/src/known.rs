@@ -1,6 +1,6 @@
 //! Known objects: what they look like, and how they may stand.
 
-use std::f32::consts::TAU;
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use bevy::math::{Quat, Vec3, Vec3Swizzles as _};
 use tabletop_camera::DrawnSolid;
@@ -117,6 +117,12 @@ impl KnownObject {
             self.stances = stances;
         }
         self
+    }
+
+    /// The same object, which may stand on each of its sides, as it stands in one of them with this rotation.
+    #[must_use]
+    pub fn on_any_side(self, rotation: Quat) -> Self {
+        self.standing(sides(rotation))
     }
 
     /// The same object, which stands on the table itself, and never on another object.
@@ -284,6 +290,26 @@ impl KnownObject {
         }
         whole
     }
+}
+
+/// The rotations of an object that stands on each of its sides, as it stands on one of them with this rotation.
+fn sides(own: Quat) -> impl Iterator<Item = Quat> {
+    let about_x = [0.0, FRAC_PI_2, -FRAC_PI_2, PI].map(|angle| (Vec3::X, angle));
+    let about_y = [FRAC_PI_2, -FRAC_PI_2].map(|angle| (Vec3::Y, angle));
+    let turns = about_x.into_iter().chain(about_y);
+    turns.map(move |(axis, angle)| own * turn_about(axis, angle))
+}
+
+/// Objects by their ids, as eyes know them that also know the joints between them.
+pub fn with_guides(objects: &[(String, KnownObject)], joints: &[JointSpec]) -> Vec<KnownObject> {
+    let mut known: Vec<_> = objects.iter().map(|(_, known)| known.clone()).collect();
+    let number = |id: &String| objects.iter().position(|(own, _)| own == id);
+    for joint in joints {
+        if let [Some(first), Some(second)] = joint.objects.each_ref().map(number) {
+            known[second] = known[second].clone().guided(first, joint);
+        }
+    }
+    known
 }
 
 impl StandingPose {
@@ -457,5 +483,23 @@ fn is_round(solid: &Primitive) -> bool {
         Solid::Cylinder { .. } => is_central && is_upright(Vec3::Y),
         Solid::Polyhedron(polyhedron) => is_central && polyhedron.axis().is_some_and(is_upright),
         Solid::Cuboid(_) => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_object_stands_on_a_side_of_its_own() {
+        let own = turn_about(Vec3::Z, 0.3);
+        let up = |side: Quat| side.inverse() * Vec3::Z;
+        let ups: Vec<_> = sides(own).map(up).collect();
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            for way in [axis, -axis] {
+                let down = ups.iter().filter(|up| up.distance(way) < 1e-6);
+                assert_eq!(down.count(), 1, "{way}");
+            }
+        }
     }
 }

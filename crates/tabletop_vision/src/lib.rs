@@ -54,4 +54,4 @@ mod support;
 pub use calibration::calibrated;
 pub use clutter::Clutter;
 pub use eyes::{Eyes, KnownScenery, ObjectPercept, Percept, PoseDeviation, Visibility};
-pub use known::{KnownObject, YawSymmetry};
+pub use known::{KnownObject, YawSymmetry, with_guides};

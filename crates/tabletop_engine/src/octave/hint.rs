@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Fields that a message says to be missing, and when they are there.
-const FIELDS: [(&str, &str); 6] = [
+const FIELDS: [(&str, &str); 7] = [
     (
         "rgbVision",
         "sensor.rgbVision exists only when there is a new picture: test for it first; --picture-every 1 gives one in every call",
@@ -14,6 +14,10 @@ const FIELDS: [(&str, &str); 6] = [
     (
         "trackerLoc",
         "sensor.trackerLoc exists only if the code of a script in the scripts' folder contains this word",
+    ),
+    (
+        "seen",
+        "sensor.seen exists from the first picture on, if the code of a script in the scripts' folder contains this word",
     ),
     ("objects", SENT_TOGETHER),
     ("contacts", SENT_TOGETHER),

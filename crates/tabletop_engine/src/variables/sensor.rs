@@ -27,6 +27,8 @@ pub struct Sensor {
     pub head_angle: Option<f64>,
     /// The objects of the world, if the script may know them.
     pub objects: Option<Vec<SensedObject>>,
+    /// The objects as the robot believes them to be, by the pictures of its head camera.
+    pub seen: Option<Vec<SensedBelief>>,
     /// The contacts of the robot's bodies.
     pub contacts: Option<Vec<SensedContact>>,
     /// The limbs by their names, which are fields of the struct, with the ids of the objects that their grippers hold.
@@ -95,6 +97,21 @@ pub struct SensedObject {
     pub mass: f64,
     /// Its description in words.
     pub description: String,
+}
+
+/// An object as the robot believes it to be. Its numbers are NaN as long as it was never seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensedBelief {
+    /// Its name.
+    pub id: String,
+    /// Its centre, in units.
+    pub position: [f64; 3],
+    /// Its rotation about the fixed axes X, then Y, then Z, in rad.
+    pub rotation: [f64; 3],
+    /// The standard deviations of its position, in units.
+    pub deviation: [f64; 3],
+    /// True if nothing else explains the picture as well.
+    pub is_sure: bool,
 }
 
 /// A control as a script may know it.
@@ -201,6 +218,18 @@ impl Sensor {
             );
             put("objects.description", texts(|object| &object.description));
         }
+        if let Some(seen) = &self.seen {
+            let points = |of: fn(&SensedBelief) -> [f64; 3]| {
+                Array::matrix(&seen.iter().map(of).collect::<Vec<_>>())
+            };
+            let ids = seen.iter().map(|belief| belief.id.clone());
+            let sure = seen.iter().map(|belief| f64::from(belief.is_sure));
+            put("seen.id", Array::texts(ids.collect()));
+            put("seen.position", points(|belief| belief.position));
+            put("seen.rotation", points(|belief| belief.rotation));
+            put("seen.deviation", points(|belief| belief.deviation));
+            put("seen.sure", Array::row(sure.collect()));
+        }
         if let Some(steps) = &self.task {
             let texts = |of: fn(&SensedStep) -> &String| {
                 Array::texts(steps.iter().map(|step| of(step).clone()).collect())
@@ -268,6 +297,13 @@ mod tests {
         assert_eq!(bare.len(), 5);
         let full = Sensor {
             objects: Some(vec![SensedObject::default()]),
+            seen: Some(vec![SensedBelief {
+                id: "a".into(),
+                position: [f64::NAN; 3],
+                rotation: [0.0; 3],
+                deviation: [0.0; 3],
+                is_sure: false,
+            }]),
             contacts: Some(Vec::new()),
             controls: Some(vec![SensedControl::default()]),
             held: Some(vec![
@@ -278,7 +314,11 @@ mod tests {
             ..Sensor::at_rest([2, 7])
         };
         assert!(full.arrays().encode().is_ok());
-        for name in ["sensor.objects.position", "sensor.task.goalRotation"] {
+        for name in [
+            "sensor.objects.position",
+            "sensor.seen.deviation",
+            "sensor.task.goalRotation",
+        ] {
             assert!(names(&full).contains(&name.to_owned()), "{name}");
         }
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bevy::{math::Quat, prelude::*};
+use bevy::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid};
 use tabletop_controller::{Observer, SeenObject, Sight};
 use tabletop_core::{
@@ -14,13 +14,13 @@ use tabletop_planner::{
     Before, Doing, Imitation, LimbOrder, PlanningStage, RobotBody, Stopped, imitate, undone,
 };
 use tabletop_task::{Binding, Task};
-use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, Visibility};
+use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, Visibility, with_guides};
 
 use super::{
     advance,
     head_picture::{HeadCameraStage, HeadPicture, head_picture},
 };
-use crate::watching::{known_object, sides, with_guides};
+use crate::watching::known_object;
 
 /// Angle, in rad, by which the head turns for what is beside the picture.
 const PAN: f64 = 0.5;
@@ -61,16 +61,16 @@ pub fn imitate_seeing(
     imitation
 }
 
-/// The ways in which an object may stand: as in the scene, and on each of its sides if the task tips it.
-fn stances(task: &Task, binding: &Binding, object: &ObjectSpec) -> Vec<Quat> {
+/// What eyes know of an object: it stands as in the scene, or on any side if the task tips it.
+fn known_in(task: &Task, binding: &Binding, object: &ObjectSpec) -> KnownObject {
     let tips = task.steps.iter().any(|step| {
         step.tipping.is_some() && binding.object(&step.object) == Some(object.id.as_str())
     });
-    let own = object.pose.rotation;
-    if !tips {
-        return vec![own];
+    let (known, own) = (known_object(object), object.pose.rotation);
+    match tips {
+        true => known.on_any_side(own),
+        false => known.standing([own]),
     }
-    sides(own).collect()
 }
 
 impl<'a> SeeingStage<'a> {
@@ -82,16 +82,15 @@ impl<'a> SeeingStage<'a> {
         binding: &Binding,
         objects: &[ObjectSpec],
     ) -> Self {
-        Self::new(app, body, objects, |object| stances(task, binding, object))
+        Self::new(app, body, objects, |object| known_in(task, binding, object))
     }
 
-    /// The app, whose robot has looked at these objects. Each of them stands in one of the ways, rotations of the object, that `stances` tells for it, turned
-    /// about the vertical by any angle.
+    /// The app, whose robot has looked at these objects, and knows this of them.
     pub fn new(
         app: &'a mut App,
         body: &'a RobotBody,
         objects: &[ObjectSpec],
-        stances: impl Fn(&ObjectSpec) -> Vec<Quat>,
+        known: impl Fn(&ObjectSpec) -> KnownObject,
     ) -> Self {
         let mut observer = Observer::default();
         let truth = observer.look(app.world_mut());
@@ -99,8 +98,7 @@ impl<'a> SeeingStage<'a> {
             objects: BTreeMap::new(),
             ..truth.clone()
         };
-        let known = objects.iter();
-        let known = known.map(|spec| (spec.id.clone(), known_object(spec, stances(spec))));
+        let known = objects.iter().map(|spec| (spec.id.clone(), known(spec)));
         let mut stage = Self {
             known: known.collect(),
             held: vec![None; belief.limbs.len()],

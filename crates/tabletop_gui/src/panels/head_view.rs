@@ -1,5 +1,8 @@
 //! The robot's view at the lower right corner of the window (report section 5, figure 9b): the head camera's own picture.
 
+mod beliefs;
+
+use beliefs::Beliefs;
 use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
@@ -8,6 +11,8 @@ use bevy_egui::{
 use tabletop_core::{
     HeadCamera, OrderSystems, Picture, PictureDemand, RestingSystems, SensorImage,
 };
+
+use tabletop_perception::{Perception, PerceptionDemand};
 
 use crate::panels::bar;
 
@@ -19,21 +24,31 @@ const BORDER: f32 = 1.0;
 
 const BORDER_COLOR: Color32 = Color32::GRAY;
 
-/// The state of the window with the robot's view: shown or hidden.
+/// The place of the button for the eyes in the inset, and its size, in points.
+const MARGIN: Vec2 = Vec2::splat(4.0);
+const EYES_BUTTON: Vec2 = Vec2::new(44.0, 20.0);
+
+const EYES_HINT: &str = "Draws where the robot believes that the objects are, by this picture alone; red where it is not sure";
+
+/// The state of the window with the robot's view.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct HeadView(bool);
+pub(crate) struct HeadView {
+    is_shown: bool,
+    /// True if what the robot believes is drawn over its picture.
+    has_beliefs: bool,
+}
 
 impl HeadView {
     pub const fn is_shown(self) -> bool {
-        self.0
+        self.is_shown
     }
 
     pub const fn toggle(&mut self) {
-        self.0 = !self.0;
+        self.is_shown = !self.is_shown;
     }
 
     fn is_on(view: Res<Self>) -> bool {
-        view.0
+        view.is_shown
     }
 }
 
@@ -42,6 +57,8 @@ pub(crate) fn plugin(app: &mut App) {
         .init_resource::<HeadCamera>()
         .init_resource::<PictureDemand>()
         .init_resource::<SensorImage>()
+        .init_resource::<Perception>()
+        .init_resource::<PerceptionDemand>()
         .add_systems(
             FixedUpdate,
             ask_for_picture
@@ -57,8 +74,15 @@ fn is_last_tick_of_frame(time: Res<Time<Fixed>>) -> bool {
     time.overstep() < time.timestep()
 }
 
-fn ask_for_picture(demand: Res<PictureDemand>) {
+fn ask_for_picture(
+    view: Res<HeadView>,
+    demand: Res<PictureDemand>,
+    perception: Res<PerceptionDemand>,
+) {
     demand.ask();
+    if view.has_beliefs {
+        perception.ask();
+    }
 }
 
 /// A picture on the graphics card, and its pixels.
@@ -77,9 +101,10 @@ impl ShownPicture {
 fn show_inset(
     mut shown: Local<Option<ShownPicture>>,
     mut contexts: EguiContexts,
-    view: Res<HeadView>,
+    mut view: ResMut<HeadView>,
     camera: Res<HeadCamera>,
     image: Res<SensorImage>,
+    beliefs: Beliefs,
 ) {
     if !view.is_shown() {
         *shown = None;
@@ -107,6 +132,14 @@ fn show_inset(
                 let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                 ui.painter()
                     .image(shown.texture.id(), inside, whole, Color32::WHITE);
+            }
+            if view.has_beliefs {
+                beliefs.paint(ui.painter(), inside);
+            }
+            let corner = Rect::from_min_size(inside.min + MARGIN, EYES_BUTTON);
+            let eyes = egui::Button::selectable(view.has_beliefs, "Eyes");
+            if ui.put(corner, eyes).on_hover_text(EYES_HINT).clicked() {
+                view.has_beliefs = !view.has_beliefs;
             }
         });
 }
