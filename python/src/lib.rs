@@ -4,6 +4,7 @@ mod camera;
 mod environment;
 mod error;
 mod options;
+mod policy;
 mod vector;
 mod world;
 
@@ -22,6 +23,7 @@ mod _tabletop {
     use crate::{
         environment::{Environment, EnvironmentSnapshot},
         error::Error,
+        policy::Policy,
         vector::Vector,
         world::{Snapshot, World},
     };

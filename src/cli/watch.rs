@@ -7,18 +7,20 @@ use std::{
 };
 
 use crate::{
+    assembly::IdAllocator,
     camera::Camera,
     recorder::{RecorderError, RecordingReader, read_picture},
     shipped::read_faultless_task,
     storage::Storage,
-    task::{Demonstration, Requirements, Task},
-    vision::calibrated,
+    task::{Demonstration, Requirements, Task, color_name},
+    vision::{DescribedObject, calibrated, described},
     watching::Watcher,
 };
+use bevy::math::Vec3;
 use clap::Args;
 use serde_json::json;
-use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, SimTick, TICKS_PER_SECOND, Table};
-use tabletop_geometry::Pose;
+use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Picture, SimTick, TICKS_PER_SECOND, Table};
+use tabletop_geometry::{Pose, Rgb};
 
 use super::{
     Failure,
@@ -27,7 +29,7 @@ use super::{
     cut_off::say_if_cut_off,
     explain::{furniture, print, reported},
     range::NumberRange,
-    terminal::show_warnings,
+    terminal::{say, show_warnings},
 };
 
 const RATE: NumberRange<u64> = NumberRange::whole(1, TICKS_PER_SECOND as u64);
@@ -37,7 +39,7 @@ pub(super) struct WatchArgs {
     /// A recording's folder, or one with PNG pictures of the head camera, in the order of their names
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// The task file that says which objects there are [default: those of the recording]; not read: where they are
+    /// The task file that says which objects there are [default: those of the recording; of pictures alone, what the first one shows]; not read: where they are
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
     #[command(flatten)]
@@ -169,23 +171,30 @@ impl PictureRoll {
         setup: Option<Setup>,
         rate: u64,
     ) -> Result<Self, Failure> {
-        let Some((table, objects, joints)) = setup else {
-            return Err(Failure::input(format!(
-                "{} holds pictures, and no recording: name the objects in them with --setup FILE",
-                folder.display()
-            )));
-        };
         let first = pictures.first().map(|path| read_picture(path));
-        let first = first
-            .transpose()
-            .map_err(Failure::input)?
-            .unwrap_or_default();
+        let first = first.transpose().map_err(Failure::input)?;
+        let first = first.unwrap_or_default();
+        let camera = taking(&HeadCamera::default(), &first);
+        let (table, objects, joints) = match setup {
+            Some(setup) => setup,
+            None => {
+                let table = Table::default();
+                let objects = described_in(&first, &camera, &table);
+                if objects.is_empty() {
+                    return Err(Failure::input(format!(
+                        "{}: the first picture shows no object; name those that come later with --setup FILE",
+                        folder.display()
+                    )));
+                }
+                (table, objects, Vec::new())
+            }
+        };
         let step = u64::from(TICKS_PER_SECOND) / rate;
         let pictures = pictures.into_iter().zip(0..);
         let frames = pictures.map(|(path, number)| (SimTick(number * step), path));
         Ok(Self {
             table,
-            camera: taking(&HeadCamera::default(), &first),
+            camera,
             objects,
             joints,
             frames: frames.collect(),
@@ -253,6 +262,26 @@ impl WatchedRoll {
             errors[last],
         ))
     }
+}
+
+/// The objects that a picture shows, named by their colours. Says what each is taken for.
+fn described_in(picture: &Picture, camera: &HeadCamera, table: &Table) -> Vec<ObjectSpec> {
+    let found = described(picture, &Camera::of_head(camera, table), table);
+    let mut ids = IdAllocator::default();
+    let objects = found.into_iter().map(|DescribedObject { shape, pose }| {
+        let solids = shape.drawn();
+        let color = solids.first().map_or(Rgb::GRAY, |solid| solid.color);
+        let id = ids.unique(color_name(color));
+        let [x, y, _] = pose.location.to_array();
+        let size = shape.bounds(Pose::new(Vec3::ZERO, pose.rotation));
+        let [wide, deep, high] = (size.high - size.low).to_array();
+        say(format_args!(
+            "tabletop: {id}: a {} at ({x:.2}, {y:.2}), {wide:.2} x {deep:.2} x {high:.2} units with its turn",
+            shape.name()
+        ));
+        ObjectSpec::new(id, pose, 1.0, shape)
+    });
+    objects.collect()
 }
 
 /// The PNG files directly in a folder, in the order of their names. A recording has its pictures in folders of its segments.

@@ -129,11 +129,7 @@ fn taken(scene: &StillScene, pick: ObjectPlace) -> Option<(String, Pose, f32)> {
 /// The pose of an object that is brought to a place: turned as little as makes it look as it should.
 pub(crate) fn pose_at(symmetry: &Symmetry, pose: Pose, place: ObjectPlace) -> Pose {
     let turn = heading(symmetry, pose).yaw().zip(place.yaw);
-    let turn = turn.map_or(0.0, |(now, wanted)| {
-        let period = std::f32::consts::TAU / now.fold as f32;
-        let turn = wanted.angle - now.angle;
-        turn - (turn / period).round() * period
-    });
+    let turn = turn.map_or(0.0, |(now, wanted)| now.turn_to(wanted));
     let turn: Quat = turn_about_z(f64::from(turn)).as_quat();
     Pose::new(place.location, (turn * pose.rotation).normalize())
 }

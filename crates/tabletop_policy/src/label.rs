@@ -64,6 +64,15 @@ pub struct Yaw {
     pub fold: usize,
 }
 
+impl Yaw {
+    /// The least turn, in rad, after which an object of this yaw looks as with another one.
+    pub fn turn_to(self, wanted: Self) -> f32 {
+        let period = std::f32::consts::TAU / self.fold.max(1) as f32;
+        let turn = wanted.angle - self.angle;
+        turn - (turn / period).round() * period
+    }
+}
+
 /// The planes of a network's response: heat, levels and headings of pick and place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LabelPlanes {

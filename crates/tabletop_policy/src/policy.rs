@@ -49,6 +49,17 @@ pub struct ObjectPlace {
     pub yaw: Option<Yaw>,
 }
 
+impl Decision {
+    /// The angle, in rad counterclockwise from above, by which the object is to be turned on its way: the least after which it looks as it should.
+    pub fn turn(&self) -> f32 {
+        let Self::Move { pick, place } = self else {
+            return 0.0;
+        };
+        let both = pick.yaw.zip(place.yaw);
+        both.map_or(0.0, |(now, wanted)| now.turn_to(wanted))
+    }
+}
+
 /// The first word of the format in a file, and its version.
 const FORMAT: &str = "tabletop-policy 1";
 /// The most bytes of a policy's file.

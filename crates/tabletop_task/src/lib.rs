@@ -52,6 +52,7 @@ pub use detour::{Detour, DetourKind};
 pub use furniture::Furniture;
 pub use goal::{Freedom, Goal, PlaceRange, Reference};
 pub use manipulation::{Ending, Manipulation};
+pub use noun::color_name;
 pub use operation::{Operation, OperationDeed};
 pub use possibility::ImpossibleRequirement;
 pub use property::{has_value, properties, property};

@@ -39,6 +39,7 @@
 mod arrangement;
 mod calibration;
 mod clutter;
+mod description;
 mod eyes;
 mod guess;
 mod guide;
@@ -53,5 +54,6 @@ mod support;
 
 pub use calibration::calibrated;
 pub use clutter::Clutter;
+pub use description::{DescribedObject, described};
 pub use eyes::{Eyes, KnownScenery, ObjectPercept, Percept, PoseDeviation, Visibility};
 pub use known::{KnownObject, YawSymmetry, with_guides};

@@ -16,7 +16,7 @@ right, Y away from the robot, Z up. Rotations are quaternions x, y, z, w. A tick
 
 import importlib
 
-from ._tabletop import Error, Snapshot, registered, version
+from ._tabletop import Error, Policy, Snapshot, registered, version
 from .recording import Recording, explain, imitate, multiply
 from .world import Limb, Objects, World
 
@@ -26,6 +26,7 @@ __all__ = [
     "Error",
     "Limb",
     "Objects",
+    "Policy",
     "Recording",
     "Snapshot",
     "TabletopEnv",

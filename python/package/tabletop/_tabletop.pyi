@@ -18,6 +18,14 @@ class Snapshot:
 class EnvironmentSnapshot:
     """An environment at a moment."""
 
+class Policy:
+    """A policy that `tabletop learn` has made."""
+
+    def __new__(cls, file: Path) -> Policy: ...
+    def decide(
+        self, picture: NDArray[np.uint8], table: tuple[float, float] = (20.0, 12.0)
+    ) -> NDArray[np.float32] | None: ...
+
 class World:
     def __new__(
         cls,

@@ -1,6 +1,7 @@
 //! Poses of objects in pictures of random scenes.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod described;
 mod guided;
 mod scenes;
 

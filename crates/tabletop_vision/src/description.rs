@@ -1,0 +1,331 @@
+//! Descriptions: what objects look like that nothing is known of, from the first picture that shows them.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+use bevy::math::{Vec2, Vec3};
+use tabletop_camera::{Camera, DrawnSolid, PictureLayers, PictureWindow, Scene};
+use tabletop_core::{Picture, Shape, Table};
+use tabletop_geometry::{Pose, Rgb, turn_about};
+
+use crate::{
+    residual::{OUTLIER, Residual, TRIED, TriedFit, rows},
+    segment::{Blob, blobs},
+};
+
+/// An object that was described.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DescribedObject {
+    /// A block, a cylinder that stands upright, or a sphere.
+    pub shape: Shape,
+    /// Its pose on the table.
+    pub pose: Pose,
+}
+
+/// Squared difference of a pixel from the table's picture above which it shows an object.
+const DIFFERENT: f32 = 1500.0;
+/// Largest angle, in rad, between colours, as rays from black, of one object, whose sides are lit differently.
+const ALIKE: f32 = 0.16;
+/// Least number of pixels of an object.
+const LEAST_PIXELS: usize = 25;
+/// The most objects that are described.
+const MOST: usize = 24;
+/// The steps of the search: the first, in units or about as far, and the last.
+const STEPS: [f32; 2] = [0.16, 0.002];
+/// Number of starts that are refined.
+const REFINED: usize = 4;
+/// The least size of an object, in units.
+const THINNEST: f32 = 0.1;
+
+/// The objects in a picture of a table, none of which is known: each is taken for a block, a cylinder that stands upright, or a sphere, of one colour, on the table
+/// itself. What hides parts of each other is described by what is seen of it.
+pub fn described(picture: &Picture, camera: &Camera, table: &Table) -> Vec<DescribedObject> {
+    let is_of_camera = picture.width == camera.width
+        && picture.height == camera.height
+        && picture.rgb.len() == 3 * picture.depth.len();
+    if !is_of_camera {
+        return Vec::new();
+    }
+    let ground = Scene {
+        solids: vec![DrawnSolid::of_table(table, 1)],
+        ..Scene::default()
+    };
+    let layers = PictureLayers::of(&ground, camera);
+    let mut residual = Residual::new(picture, layers, *camera);
+    let whole = residual.whole();
+    residual.keep(&[], &whole);
+    let mut found: Vec<DescribedObject> = Vec::new();
+    let mut silhouettes = silhouettes(picture, residual.squares());
+    // What is nearer to the camera hides what is behind it.
+    let lowest = |blob: &Blob| blob.pixels.last().copied();
+    silhouettes.sort_by_key(|blob| std::cmp::Reverse(lowest(blob)));
+    for silhouette in silhouettes.into_iter().take(MOST) {
+        let mut description = Description {
+            residual: &mut residual,
+            kept: solids_of(&found),
+            silhouette: &silhouette,
+        };
+        found.extend(description.best());
+    }
+    found
+}
+
+fn solids_of(objects: &[DescribedObject]) -> Vec<DrawnSolid> {
+    let solids = (2..).zip(objects).map(|(number, object)| {
+        let solids = object.shape.drawn().into_iter();
+        solids.map(move |solid| DrawnSolid::of(object.pose, &solid, number))
+    });
+    solids.flatten().collect()
+}
+
+/// The connected pixels of one colour that are not the table.
+fn silhouettes(picture: &Picture, squares: &[f32]) -> Vec<Blob> {
+    let ray = |pixel: usize| {
+        let rgb = &picture.rgb[3 * pixel..3 * pixel + 3];
+        Vec3::new(f32::from(rgb[0]), f32::from(rgb[1]), f32::from(rgb[2])).normalize_or(Vec3::ONE)
+    };
+    let mut open: Vec<usize> = (0..squares.len())
+        .filter(|&pixel| squares[pixel] > DIFFERENT)
+        .collect();
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    let mut found = Vec::new();
+    while open.len() >= LEAST_PIXELS && found.len() < MOST {
+        // The colour that most pixels are about.
+        let about = |from: Vec3| move |pixel: &usize| ray(*pixel).dot(from) > libm::cosf(ALIKE);
+        let step = open.len().div_ceil(64);
+        let candidates = open.iter().step_by(step).map(|&pixel| ray(pixel));
+        let count = |from: Vec3| open.iter().filter(|pixel| about(from)(pixel)).count();
+        let counted = candidates.map(|from| (count(from), from));
+        let Some((_, from)) =
+            counted.reduce(|best, next| if next.0 > best.0 { next } else { best })
+        else {
+            break;
+        };
+        let mut is_own = vec![false; squares.len()];
+        for pixel in open.iter().filter(|pixel| about(from)(pixel)) {
+            is_own[*pixel] = true;
+        }
+        open.retain(|pixel| !is_own[*pixel]);
+        let parts = blobs(width, height, |pixel| is_own[pixel]);
+        found.extend(
+            parts
+                .into_iter()
+                .filter(|it| it.pixels.len() >= LEAST_PIXELS),
+        );
+    }
+    found
+}
+
+/// The kind of an object, with its place on the table and its sizes in units.
+#[derive(Clone, Copy, Debug)]
+enum Model {
+    Block { at: Vec2, yaw: f32, span: Vec3 },
+    Cylinder { at: Vec2, radius: f32, height: f32 },
+    Sphere { at: Vec2, radius: f32 },
+}
+
+impl Model {
+    /// The numbers that are sought: each is a length, or an angle that moves the object's edges about as far.
+    fn parameters(self) -> usize {
+        match self {
+            Self::Block { .. } => 6,
+            Self::Cylinder { .. } => 4,
+            Self::Sphere { .. } => 3,
+        }
+    }
+
+    fn changed(self, parameter: usize, by: f32) -> Self {
+        let mut model = self;
+        match &mut model {
+            Self::Block { at, yaw, span } => match parameter {
+                0 => at.x += by,
+                1 => at.y += by,
+                2 => *yaw += by / span.truncate().length().max(THINNEST) * 2.0,
+                size => span[size - 3] = (span[size - 3] + by).max(THINNEST),
+            },
+            Self::Cylinder { at, radius, height } => match parameter {
+                0 => at.x += by,
+                1 => at.y += by,
+                2 => *radius = (*radius + by / 2.0).max(THINNEST / 2.0),
+                _ => *height = (*height + by).max(THINNEST),
+            },
+            Self::Sphere { at, radius } => match parameter {
+                0 => at.x += by,
+                1 => at.y += by,
+                _ => *radius = (*radius + by / 2.0).max(THINNEST / 2.0),
+            },
+        }
+        model
+    }
+
+    fn object(self, color: Rgb) -> DescribedObject {
+        let upright = turn_about(Vec3::X, FRAC_PI_2);
+        let (shape, pose) = match self {
+            Self::Block { at, yaw, span } => (
+                Shape::Block { span, color },
+                Pose::new(at.extend(span.z / 2.0), turn_about(Vec3::Z, yaw)),
+            ),
+            Self::Cylinder { at, radius, height } => (
+                Shape::Cylinder {
+                    radius,
+                    yspan: height,
+                    color,
+                },
+                Pose::new(at.extend(height / 2.0), upright),
+            ),
+            Self::Sphere { at, radius } => {
+                (Shape::Sphere { radius, color }, Pose::at(at.extend(radius)))
+            }
+        };
+        DescribedObject { shape, pose }
+    }
+}
+
+/// The search for a description of a silhouette.
+struct Description<'d, 'p> {
+    residual: &'d mut Residual<'p>,
+    kept: Vec<DrawnSolid>,
+    silhouette: &'d Blob,
+}
+
+impl Description<'_, '_> {
+    /// The description that explains the silhouette best.
+    fn best(&mut self) -> Option<DescribedObject> {
+        let window = self.window();
+        let kept = std::mem::take(&mut self.kept);
+        self.residual.keep(&kept, &window);
+        let starts = self.starts().into_iter().map(|model| {
+            let color = self.color(model);
+            (model, self.fit(model, color).gain)
+        });
+        let mut tried: Vec<_> = starts.collect();
+        tried.sort_by(|one, other| one.1.total_cmp(&other.1));
+        let mut best: Option<(Model, Rgb, f32)> = None;
+        // Of each kind, since a kind shows only when its sizes are right.
+        for kind in [3, 4, 6] {
+            let own = tried.iter().filter(|(model, _)| model.parameters() == kind);
+            let own: Vec<_> = own.take(REFINED).copied().collect();
+            for (model, _) in own {
+                let (model, color, fit) = self.refined(model);
+                if best.as_ref().is_none_or(|best| fit.gain < best.2) {
+                    best = Some((model, color, fit.gain));
+                }
+            }
+        }
+        let (model, color, gain) = best?;
+        (gain < 0.0).then(|| model.object(color))
+    }
+
+    /// The window of the silhouette, and some pixels around it.
+    fn window(&self) -> PictureWindow {
+        let width = self.residual.seen().width;
+        let pixels = self.silhouette.pixels.iter().map(|&pixel| pixel as u32);
+        let columns = || pixels.clone().map(|pixel| pixel % width);
+        let rows = || pixels.clone().map(|pixel| pixel / width);
+        let range =
+            |low: Option<u32>, high: Option<u32>| low.unwrap_or(0)..high.map_or(0, |it| it + 1);
+        let own = PictureWindow {
+            columns: range(columns().min(), columns().max()),
+            rows: range(rows().min(), rows().max()),
+        };
+        own.widened(8, self.residual.size())
+    }
+
+    fn starts(&self) -> Vec<Model> {
+        let width = self.residual.seen().width as usize;
+        let pixels = self.silhouette.pixels.iter();
+        let places = pixels.map(|pixel| Vec2::new((pixel % width) as f32, (pixel / width) as f32));
+        let middle = places.sum::<Vec2>() / self.silhouette.pixels.len() as f32;
+        let on_plane = |pixel: Vec2, height: f32| {
+            let (eye, ray) = (self.residual.eye(), self.residual.camera.ray_through(pixel));
+            let down = if ray.z < -1e-3 { -ray.z } else { 1e-3 };
+            (eye + ray * ((eye.z - height) / down).clamp(0.0, 1e3)).truncate()
+        };
+        let unit = on_plane(middle, 0.5).distance(on_plane(middle + Vec2::X, 0.5));
+        let size = ((self.silhouette.pixels.len() as f32).sqrt() * unit * 0.8).max(THINNEST);
+        let at = |height: f32| on_plane(middle, height / 2.0);
+        let mut starts = Vec::new();
+        for height in [0.4 * size, 0.8 * size, 1.4 * size] {
+            for [long, short] in [[1.0, 1.0], [1.7, 0.7]] {
+                for eighth in 0..8_u8 {
+                    starts.push(Model::Block {
+                        at: at(height),
+                        yaw: f32::from(eighth) * TAU / 16.0,
+                        span: Vec3::new(long * size, short * size, height),
+                    });
+                }
+            }
+            starts.push(Model::Cylinder {
+                at: at(height),
+                radius: size / 2.0,
+                height,
+            });
+        }
+        starts.push(Model::Sphere {
+            at: at(size),
+            radius: size / 2.0,
+        });
+        starts
+    }
+
+    fn solids(model: Model, color: Rgb) -> Vec<DrawnSolid> {
+        let DescribedObject { shape, pose } = model.object(color);
+        let solids = shape.drawn().into_iter();
+        solids
+            .map(|solid| DrawnSolid::of(pose, &solid, TRIED))
+            .collect()
+    }
+
+    fn fit(&mut self, model: Model, color: Rgb) -> TriedFit {
+        self.residual
+            .try_solids(&Self::solids(model, color), OUTLIER)
+    }
+
+    /// The colour with which the object is as bright as its pixels.
+    fn color(&mut self, model: Model) -> Rgb {
+        let solids = Self::solids(model, Rgb::new(0.5, 0.5, 0.5));
+        let window = self.window();
+        let seen = self.residual.seen();
+        let drawn = self.residual.draw(&solids, &window);
+        let (mut both, mut own) = ([0.0_f32; 3], [0.0_f32; 3]);
+        for row in rows(&window, seen.width) {
+            for pixel in row.filter(|&pixel| drawn.objects[pixel] == TRIED) {
+                for part in 0..3 {
+                    let drawn = f32::from(drawn.rgb[3 * pixel + part]);
+                    both[part] += f32::from(seen.rgb[3 * pixel + part]) * drawn;
+                    own[part] += drawn * drawn;
+                }
+            }
+        }
+        let part = |part: usize| (0.5 * both[part] / own[part].max(1.0)).clamp(0.0, 1.0);
+        Rgb::new(part(0), part(1), part(2))
+    }
+
+    /// The best model near one, by smaller and smaller steps.
+    fn refined(&mut self, mut model: Model) -> (Model, Rgb, TriedFit) {
+        let mut color = self.color(model);
+        let mut best = self.fit(model, color);
+        let mut step = STEPS[0];
+        while step > STEPS[1] {
+            let mut is_better = false;
+            for parameter in 0..model.parameters() {
+                for by in [step, -step] {
+                    let next = model.changed(parameter, by);
+                    let fit = self.fit(next, color);
+                    if fit.gain < best.gain {
+                        (model, best, is_better) = (next, fit, true);
+                        break;
+                    }
+                }
+            }
+            let now = self.color(model);
+            let fit = self.fit(model, now);
+            if fit.gain < best.gain {
+                (color, best) = (now, fit);
+            }
+            if !is_better {
+                step *= 0.5;
+            }
+        }
+        (model, color, best)
+    }
+}
