@@ -30,6 +30,7 @@ mod output;
 mod picture_size;
 mod progress;
 mod range;
+mod real;
 mod recorded;
 mod recordings;
 mod replay;
@@ -77,7 +78,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Simulate a task file or a scenario without a window, as fast as possible
-    Run(run_arguments::RunArgs),
+    Run(Box<run_arguments::RunArgs>),
     /// Run a recording again: watch it, verify it, or make its pictures anew
     Replay(replay::ReplayArgs),
     /// Print the task that a recording shows, step by step

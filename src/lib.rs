@@ -50,6 +50,7 @@
 //! ```
 
 pub use tabletop_assembly as assembly;
+pub use tabletop_bridge as bridge;
 pub use tabletop_camera as camera;
 pub use tabletop_controller as controller;
 pub use tabletop_core as core;
@@ -74,6 +75,7 @@ pub use tabletop_perception as perception;
 pub use tabletop_physics as physics;
 pub use tabletop_planner as planner;
 pub use tabletop_policy as policy;
+pub use tabletop_real as real;
 pub use tabletop_recorder as recorder;
 pub use tabletop_replay as replay;
 pub use tabletop_report as report;

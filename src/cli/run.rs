@@ -11,8 +11,8 @@ use crate::{
     TabletopSimPlugins,
     assembly::{IdAllocator, assemble},
     core::{
-        RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _,
-        TICKS_PER_SECOND, WriteCommand as _,
+        RecordingCommand, RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick,
+        StepApp as _, TICKS_PER_SECOND, Table, WriteCommand as _,
     },
     final_state, headless_app_with,
     script::shut_down,
@@ -22,12 +22,13 @@ use crate::{
     task_files::save_task,
 };
 use bevy::prelude::*;
-use tabletop_scenario::{Outcome, ScenarioRun};
+use tabletop_scenario::{Outcome, ScenarioRun, Step};
 
 use super::{
     Failure, Output, WRONG_INPUT,
     duration::{pass, ticks},
     explain::read,
+    real,
     recorded::{self, say_moved_aside},
     run_arguments::RunArgs,
     script::Script,
@@ -50,9 +51,20 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
-            let plugins = args.simulator(args.robot.plugin()?)?;
+            let robot = args.robot.plugin()?;
+            let hand_pictures = args.hand_cameras.of(&robot)?;
             let (scene, result) = scene_of(setup, &args.allowed.folders)?;
+            let plugins = args.plugins(
+                robot.clone(),
+                args.record.as_deref(),
+                args.seed,
+                hand_pictures,
+            )?;
             let mut app = headless_app_with(plugins);
+            args.real.attach(&mut app, &robot, &scene.table)?;
+            if args.record.is_some() {
+                app.world_mut().write_command(RecordingCommand::Start);
+            }
             app.add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
             args.tell_task(&mut app, Some(&scene))?;
             put_on_table(scene, &mut app);
@@ -60,9 +72,12 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
+            real::release(&mut app);
             let ends = args.write_ends(&app);
+            let recorded = recorded::finish(&mut app);
             args.sum_up(&true_path(setup), "", &app, start);
-            Failure::of_all([script, ends])?;
+            say_moved_aside(&recorded.as_ref().cloned().unwrap_or_default());
+            Failure::of_all([script, recorded.map(drop), ends])?;
             Ok(result)
         }
     }
@@ -109,8 +124,20 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let (scenario, robot) = args.prepare(scenario)?;
     let program = args.program(&scenario, args.seed).map_err(Failure::input)?;
     let hand_pictures = args.hand_cameras.of(&robot)?;
-    let plugins = args.plugins(robot, args.record.as_deref(), args.seed, hand_pictures)?;
+    let plugins = args.plugins(
+        robot.clone(),
+        args.record.as_deref(),
+        args.seed,
+        hand_pictures,
+    )?;
+    let setup = scenario.setup.as_ref().map(|setup| &setup.step);
+    let table = if let Some(Step::Load { file, .. }) = setup {
+        args.read_faultless(file).map_err(Failure::input)?.table
+    } else {
+        Table::default()
+    };
     let mut app = headless_app_with(plugins);
+    args.real.attach(&mut app, &robot, &table)?;
     let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program))
         .add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
@@ -146,6 +173,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         Ok(())
     });
     shut_down(app.world_mut());
+    real::release(&mut app);
     let ends = args.write_ends(&app);
     let recorded = recorded::finish(&mut app).map_err(|failure| failure.unless_said(&said));
     let run = app.world().resource::<ScenarioRun>();

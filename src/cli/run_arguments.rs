@@ -6,7 +6,7 @@ use std::{
 };
 
 use bevy::{app::PluginGroupBuilder, prelude::*};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use serde_json::json;
 use tabletop_scenario::{Program, Scenario, ScenarioError};
 
@@ -17,6 +17,7 @@ use super::{
     hand_cameras::HandCameraOption,
     jobs::JOBS,
     range::SEEDS,
+    real::RealOptions,
     robot_options::{EngineOptions, RobotOptions, script},
     script::headless_settings,
     seed_range::seed_range,
@@ -27,7 +28,7 @@ use crate::{
     core::{RobotLayout, SceneSpec},
     recorder::{HandPictures, RecorderPlugin, UnrecordedPlugin},
     robot::RobotPlugin,
-    script::ScriptPlugin,
+    script::{FieldPolicy, ScriptPlugin, ScriptSettings},
     shipped::{read_faultless_task, read_scenario, true_path},
 };
 
@@ -35,6 +36,7 @@ use crate::{
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
 #[command(mut_group("HandCameraOption", |options| options.requires("record")))]
 #[command(mut_group("ShardOption", |options| options.requires("seeds")))]
+#[command(group = ArgGroup::new("recordable").args(["scenario", "shadow", "real"]).multiple(true))]
 pub(super) struct RunArgs {
     /// The scenario to perform (docs/scenarios.md); exit code 1 if one of its steps fails
     #[arg(value_name = "SCENARIO")]
@@ -64,7 +66,7 @@ pub(super) struct RunArgs {
         value_name = "A..B",
         value_parser = seed_range,
         requires = "scenario",
-        conflicts_with_all = ["seed", "script", "final_state", "final_robot", "save"]
+        conflicts_with_all = ["seed", "script", "final_state", "final_robot", "save", "real_robot"]
     )]
     pub seeds: Option<Range<u64>>,
     #[command(flatten)]
@@ -73,7 +75,7 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true, requires = "seeds")]
     pub jobs: Option<usize>,
     /// The folder for the scenario's recording, or with --seeds for a folder of each seed, of which those that are whole stay; without it, nothing is recorded
-    #[arg(long, value_name = "DIR", requires = "scenario")]
+    #[arg(long, value_name = "DIR", requires = "recordable")]
     pub record: Option<PathBuf>,
     #[command(flatten)]
     pub hand_cameras: HandCameraOption,
@@ -98,6 +100,8 @@ pub(super) struct RunArgs {
     pub engine: EngineOptions,
     #[command(flatten)]
     pub robot: RobotOptions,
+    #[command(flatten)]
+    pub real: RealOptions,
     /// Leave out the last line, which sums up the run
     #[arg(long, short)]
     pub quiet: bool,
@@ -127,9 +131,18 @@ impl RunArgs {
         Ok(program)
     }
 
+    /// The settings of the script. One that moves a real robot is told nothing that only a simulation knows.
+    fn script_settings(&self) -> Result<ScriptSettings, Failure> {
+        let mut settings = headless_settings(&self.engine, self.script.as_deref())?;
+        if self.real.address().is_some() {
+            settings.objects = FieldPolicy::Never;
+        }
+        Ok(settings)
+    }
+
     /// The simulator with this robot, and the engine that was asked for.
     pub fn simulator(&self, robot: RobotPlugin) -> Result<PluginGroupBuilder, Failure> {
-        let settings = headless_settings(&self.engine, self.script.as_deref())?;
+        let settings = self.script_settings()?;
         Ok(TabletopSimPlugins
             .build()
             .set(robot)
@@ -156,6 +169,9 @@ impl RunArgs {
             header.insert("setup".into(), text(true_path(setup)));
         }
         header.insert("seed".into(), json!(seed));
+        if let Some(address) = self.real.address() {
+            header.insert("real".into(), json!(address.to_string()));
+        }
         Ok(plugins.set(RecorderPlugin {
             folder: folder.to_owned(),
             header,
@@ -165,7 +181,7 @@ impl RunArgs {
     }
 
     /// The scene of a task file, which may include files in the allowed folders, or all its faults.
-    fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
+    pub fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
         read_faultless_task(file, &self.allowed.folders)
     }
 }

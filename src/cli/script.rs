@@ -2,6 +2,7 @@
 
 use crate::{
     core::{ScriptCommand, ScriptEvent, StepApp as _},
+    real::RealRobot,
     script::{ScriptSettings, shut_down},
 };
 use bevy::{ecs::message::MessageCursor, prelude::*};
@@ -9,6 +10,7 @@ use bevy::{ecs::message::MessageCursor, prelude::*};
 use super::{
     Failure,
     duration::pass,
+    real,
     robot_options::EngineOptions,
     terminal::{is_unheard, say},
 };
@@ -57,6 +59,7 @@ impl Script {
                 | ScriptEvent::Noted { .. } => {}
             }
         }
+        real::check(app)?;
         match is_unheard() {
             true => Err(Failure::silent()),
             false => Ok(()),
@@ -64,10 +67,13 @@ impl Script {
     }
 
     /// Simulates this many ticks, or until the script has ended.
-    pub fn run(self, app: &mut App, ticks: u64) -> Result<(), Failure> {
+    pub fn run(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
         if !self.is_wanted {
-            pass(app, ticks);
-            return Ok(());
+            if !app.world().contains_resource::<RealRobot>() {
+                pass(app, ticks);
+                return Ok(());
+            }
+            return self.run_for(app, ticks);
         }
         // The first tick is that of the init script.
         self.act(app, ticks + 1)

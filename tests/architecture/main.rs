@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 42] = [
+const RULES: [Rule; 43] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -208,6 +208,15 @@ const RULES: [Rule; 42] = [
         ],
     ),
     Rule::new(
+        "tabletop_real",
+        &[
+            "tabletop_bridge",
+            "tabletop_controller",
+            "tabletop_core",
+            "tabletop_planner",
+        ],
+    ),
+    Rule::new(
         "tabletop_policy",
         &[
             "tabletop_camera",
@@ -356,6 +365,8 @@ const RULES: [Rule; 42] = [
             "tabletop_validation",
             "tabletop_view",
             "tabletop_perception",
+            "tabletop_bridge",
+            "tabletop_real",
             "tabletop_vision",
             "tabletop_gui",
         ],

@@ -242,6 +242,13 @@ impl Bridge {
         lock(&self.shared).state.clone()
     }
 
+    /// The robot's names for the joints of a limb, from its base to its tip.
+    pub fn joints_of(&self, limb: &str) -> impl Iterator<Item = &str> {
+        let place = self.profile.limb(limb);
+        let joints = place.map_or(&[][..], |place| &self.profile.limbs[place].joints);
+        joints.iter().map(|joint| joint.name.as_str())
+    }
+
     /// How old its joints' angles are.
     pub fn age(&self) -> Duration {
         let driving = lock(&self.shared);

@@ -8,7 +8,8 @@ use tabletop_core::{Picture, Shape, Table};
 use tabletop_geometry::{Pose, Rgb, turn_about};
 
 use crate::{
-    residual::{OUTLIER, Residual, TRIED, TriedFit, rows},
+    normal::LeastSquares,
+    residual::{OUTLIER, Residual, TRIED, TriedFit, rows, square_of},
     segment::{Blob, blobs},
 };
 
@@ -29,10 +30,16 @@ const ALIKE: f32 = 0.16;
 const LEAST_PIXELS: usize = 25;
 /// The most objects that are described.
 const MOST: usize = 24;
-/// The steps of the search: the first, in units or about as far, and the last.
-const STEPS: [f32; 2] = [0.16, 0.002];
+/// The most numbers of a model.
+const PARAMETERS: usize = 6;
+/// Steps of the derivatives of least squares, in units or about as far, the most solutions with each, and their damping.
+const SQUARES_STEPS: [f32; 6] = [0.15, 0.1, 0.06, 0.1, 0.06, 0.03];
+const MOST_SQUARES: usize = 25;
+const DAMPING: f64 = 1e-4;
+/// The first and the last of the smaller steps thereafter.
+const STEPS: [f32; 2] = [0.01, 0.000_5];
 /// Number of starts that are refined.
-const REFINED: usize = 4;
+const REFINED: usize = 16;
 /// The least size of an object, in units.
 const THINNEST: f32 = 0.1;
 
@@ -62,6 +69,7 @@ pub fn described(picture: &Picture, camera: &Camera, table: &Table) -> Vec<Descr
         let mut description = Description {
             residual: &mut residual,
             kept: solids_of(&found),
+            inner: inner(&silhouette, picture.width as usize),
             silhouette: &silhouette,
         };
         found.extend(description.best());
@@ -185,6 +193,27 @@ struct Description<'d, 'p> {
     residual: &'d mut Residual<'p>,
     kept: Vec<DrawnSolid>,
     silhouette: &'d Blob,
+    /// Its pixels that have no other ones beside them: none of them shows an edge.
+    inner: Vec<usize>,
+}
+
+/// The pixels of a blob all of whose neighbours belong to it; all if there are none.
+fn inner(blob: &Blob, width: usize) -> Vec<usize> {
+    let holds = |pixel: usize| blob.pixels.binary_search(&pixel).is_ok();
+    let is_inner = |pixel: &usize| {
+        let beside = [
+            pixel.wrapping_sub(1),
+            pixel + 1,
+            pixel.wrapping_sub(width),
+            pixel + width,
+        ];
+        beside.into_iter().all(holds)
+    };
+    let inner: Vec<_> = blob.pixels.iter().copied().filter(is_inner).collect();
+    match inner.is_empty() {
+        true => blob.pixels.clone(),
+        false => inner,
+    }
 }
 
 impl Description<'_, '_> {
@@ -287,23 +316,44 @@ impl Description<'_, '_> {
         let seen = self.residual.seen();
         let drawn = self.residual.draw(&solids, &window);
         let (mut both, mut own) = ([0.0_f32; 3], [0.0_f32; 3]);
-        for row in rows(&window, seen.width) {
-            for pixel in row.filter(|&pixel| drawn.objects[pixel] == TRIED) {
-                for part in 0..3 {
-                    let drawn = f32::from(drawn.rgb[3 * pixel + part]);
-                    both[part] += f32::from(seen.rgb[3 * pixel + part]) * drawn;
-                    own[part] += drawn * drawn;
-                }
+        let inner = self.inner.iter().copied();
+        for pixel in inner.filter(|&pixel| drawn.objects[pixel] == TRIED) {
+            for part in 0..3 {
+                let drawn = f32::from(drawn.rgb[3 * pixel + part]);
+                both[part] += f32::from(seen.rgb[3 * pixel + part]) * drawn;
+                own[part] += drawn * drawn;
             }
         }
         let part = |part: usize| (0.5 * both[part] / own[part].max(1.0)).clamp(0.0, 1.0);
         Rgb::new(part(0), part(1), part(2))
     }
 
-    /// The best model near one, by smaller and smaller steps.
+    /// The best model near one: by least squares, and then by smaller and smaller steps.
     fn refined(&mut self, mut model: Model) -> (Model, Rgb, TriedFit) {
         let mut color = self.color(model);
         let mut best = self.fit(model, color);
+        for step in SQUARES_STEPS {
+            for _ in 0..MOST_SQUARES {
+                let by = self.equations(model, color, step).step(DAMPING);
+                let mut tried = |part: f64| {
+                    let mut next = model;
+                    for (parameter, by) in by.iter().enumerate().take(model.parameters()) {
+                        let by = (by * part) as f32;
+                        next = next.changed(parameter, by.clamp(-4.0 * step, 4.0 * step));
+                    }
+                    let color = self.color(next);
+                    (next, color, self.fit(next, color))
+                };
+                // Outliers weigh little, so steps are rather too short.
+                let parts = [6.0, 2.5, 1.0, 0.4, 0.15].map(&mut tried);
+                let next = parts.into_iter().filter(|next| next.2.gain < best.gain);
+                let next = next.min_by(|one, other| one.2.gain.total_cmp(&other.2.gain));
+                let Some(next) = next else {
+                    break;
+                };
+                (model, color, best) = next;
+            }
+        }
         let mut step = STEPS[0];
         while step > STEPS[1] {
             let mut is_better = false;
@@ -317,15 +367,44 @@ impl Description<'_, '_> {
                     }
                 }
             }
-            let now = self.color(model);
-            let fit = self.fit(model, now);
-            if fit.gain < best.gain {
-                (color, best) = (now, fit);
-            }
             if !is_better {
                 step *= 0.5;
             }
         }
         (model, color, best)
+    }
+
+    /// The normal equations of a model's parameters, with derivatives over a step to both sides.
+    fn equations(&mut self, model: Model, color: Rgb, step: f32) -> LeastSquares<PARAMETERS> {
+        let window = self.window();
+        let width = self.residual.seen().width;
+        let mut drawn = |model: Model| -> Vec<u8> {
+            let drawn = self.residual.draw(&Self::solids(model, color), &window);
+            let parts = rows(&window, width)
+                .flat_map(|row| drawn.rgb[3 * row.start..3 * row.end].iter().copied());
+            parts.collect()
+        };
+        let here = drawn(model);
+        let mut derivatives = vec![[0.0_f32; PARAMETERS]; here.len()];
+        for parameter in 0..model.parameters() {
+            let sides = [step, -step].map(|by| drawn(model.changed(parameter, by)));
+            let parts = sides[0].iter().zip(&sides[1]);
+            for (own, (more, less)) in derivatives.iter_mut().zip(parts) {
+                own[parameter] = (f32::from(*more) - f32::from(*less)) / (2.0 * step);
+            }
+        }
+        let seen = self.residual.seen();
+        let seen = rows(&window, width)
+            .flat_map(|row| seen.rgb[3 * row.start..3 * row.end].chunks_exact(3));
+        let mut equations = LeastSquares::default();
+        let pixels = here.chunks_exact(3).zip(derivatives.chunks_exact(3));
+        for (seen, (here, derivatives)) in seen.zip(pixels) {
+            let weight = OUTLIER / (square_of(seen, here) + OUTLIER);
+            for (part, derivatives) in derivatives.iter().enumerate() {
+                let difference = f32::from(seen[part]) - f32::from(here[part]);
+                equations.add(derivatives, difference, weight * weight);
+            }
+        }
+        equations
     }
 }

@@ -11,9 +11,15 @@ use crate::{
 impl<'a, 'p> ObjectArrangement<'a, 'p> {
     /// Finds all objects without a placement, the one that explains most of its pixels first.
     pub(super) fn find_all(&mut self, chance: &mut impl FnMut() -> f32) {
+        for object in 0..self.objects.len() {
+            if self.placements[object].is_some() {
+                self.place_guided(object);
+            }
+        }
         let mut candidates: Vec<Option<Option<PoseCandidate>>> = vec![None; self.objects.len()];
         while let Some((object, placement)) = self.next_found(&mut candidates, chance) {
             self.place(object, Some(placement));
+            self.place_guided(object);
             let window = self.windows[object].clone().unwrap_or_default();
             let wide = window.widened(4, self.residual.size());
             for (i, candidate) in candidates.iter_mut().enumerate() {
@@ -40,18 +46,19 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             // Of objects that look the same, the first one is looked for.
             let is_alike = |j: usize| self.objects[j] == self.objects[i];
             self.placements[i].is_none()
+                && self.objects[i].guide().is_none()
                 && !(0..i).any(|j| self.placements[j].is_none() && is_alike(j))
         });
         let open: Vec<_> = open.collect();
         let mut order: Vec<_> = open
             .into_iter()
-            .filter_map(|i| Some((i, self.promise(i)? * chance())))
+            .filter_map(|i| Some((i, self.guess(i)?.promise() * chance())))
             .collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut best: Option<(usize, StandingPose, f32)> = None;
         for (i, _) in order {
             if candidates[i].is_none() {
-                candidates[i] = Some(self.candidate(i));
+                candidates[i] = Some(self.guess(i).and_then(|mut guess| guess.best()));
             }
             let Some(candidate) = candidates[i].as_ref().and_then(Option::as_ref) else {
                 continue;
@@ -65,25 +72,6 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             }
         }
         best.map(|(object, placement, _)| (object, placement))
-    }
-
-    /// About which part of an object is seen in one piece, at most 1; `None` if it cannot be looked for.
-    fn promise(&mut self, object: usize) -> Option<f32> {
-        match self.objects[object].guide() {
-            Some(guide) => {
-                let is_open = !self.open_blobs(object).is_empty();
-                (is_open && self.placements[guide.by].is_some()).then_some(1.0)
-            }
-            None => Some(self.guess(object)?.promise()),
-        }
-    }
-
-    /// The best candidate for an object.
-    fn candidate(&mut self, object: usize) -> Option<PoseCandidate> {
-        match self.objects[object].guide() {
-            Some(_) => self.guided_candidate(object),
-            None => self.guess(object)?.best(),
-        }
     }
 
     /// The search for an object among those that are placed; `None` if no pixel may show it.

@@ -4,10 +4,9 @@ use tabletop_geometry::Pose;
 
 use super::ObjectArrangement;
 use crate::{
-    guess::PoseCandidate,
     known::StandingPose,
     refine::Refinement,
-    residual::{OUTLIER, TriedFit, loss},
+    residual::{OUTLIER, TriedFit},
 };
 
 /// Distance, in units, of the displacements that are tried first, the number of those that are refined, and the least step of that.
@@ -28,17 +27,16 @@ impl ObjectArrangement<'_, '_> {
         placed.collect()
     }
 
-    /// The best placement of a guided object, if what guides it has one.
-    pub(super) fn guided_candidate(&mut self, object: usize) -> Option<PoseCandidate> {
-        let open = self.open_blobs(object);
-        let pixels = open.iter().flat_map(|blob| &blob.pixels);
-        let open: f32 = pixels.map(|&i| loss(self.squares[i], OUTLIER)).sum();
-        let (placement, fit) = self.along_guide(object)?;
-        Some(PoseCandidate {
-            placement,
-            score: -fit.gain / (open + fit.misfit).max(1.0),
-            window: self.window_at(object, &placement)?,
-        })
+    /// Places what an object guides: it must be somewhere along its guide.
+    pub(super) fn place_guided(&mut self, object: usize) {
+        for part in 0..self.objects.len() {
+            let by = self.objects[part].guide().map(|guide| guide.by);
+            if by == Some(object) && self.placements[part].is_none() {
+                let placement = self.along_guide(part).map(|(placement, _)| placement);
+                self.place(part, placement);
+                self.place_guided(part);
+            }
+        }
     }
 
     /// The best placement of an object that its guide allows.

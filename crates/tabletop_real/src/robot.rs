@@ -1,0 +1,91 @@
+//! The real robot.
+
+use std::sync::Arc;
+
+use bevy::prelude::*;
+use tabletop_bridge::{
+    Bridge, PictureFeed, RobotPicture, RobotState, Shadow, StopReason, WatchdogState,
+};
+
+/// A real robot.
+#[derive(Resource)]
+pub struct RealRobot {
+    link: RobotLink,
+    /// The pictures of its head camera.
+    feed: Option<PictureFeed>,
+    /// Why it is followed or driven no longer.
+    end: Option<String>,
+}
+
+/// The connection to a real robot.
+pub enum RobotLink {
+    /// It is only looked at.
+    Shadow(Shadow),
+    /// It is driven.
+    Driven(Box<Bridge>),
+}
+
+impl RealRobot {
+    /// A robot, with its head camera if it has one.
+    pub const fn new(link: RobotLink, feed: Option<PictureFeed>) -> Self {
+        Self {
+            link,
+            feed,
+            end: None,
+        }
+    }
+
+    /// The newest picture of its head camera.
+    pub fn picture(&self) -> Option<Arc<RobotPicture>> {
+        self.feed.as_ref()?.latest()
+    }
+
+    /// Its state as of its last messages.
+    pub fn state(&self) -> RobotState {
+        match &self.link {
+            RobotLink::Shadow(shadow) => shadow.state(),
+            RobotLink::Driven(bridge) => bridge.state(),
+        }
+    }
+
+    /// Why it is followed or driven no longer; none as long as it is.
+    pub fn end(&self) -> Option<&str> {
+        self.end.as_deref()
+    }
+
+    /// Brings a driven robot to rest, lets it hold its position, and ends the connection.
+    pub fn stop(self) -> Option<StopReason> {
+        match self.link {
+            RobotLink::Shadow(_) => None,
+            RobotLink::Driven(bridge) => Some(bridge.stop()),
+        }
+    }
+
+    pub(crate) fn bridge(&mut self) -> Option<&mut Bridge> {
+        match &mut self.link {
+            RobotLink::Shadow(_) => None,
+            RobotLink::Driven(bridge) => Some(bridge),
+        }
+    }
+
+    /// Ends for a reason; the first one counts.
+    pub(crate) fn give_up(&mut self, reason: String) {
+        self.end.get_or_insert(reason);
+    }
+
+    /// Notes if the connection or the robot has ended it.
+    pub(crate) fn look_after(&mut self) {
+        let fault = match &self.link {
+            RobotLink::Shadow(shadow) => shadow.fault(),
+            RobotLink::Driven(bridge) => match bridge.watchdog() {
+                WatchdogState::Ramping(reason) | WatchdogState::Held(reason) => {
+                    Some(reason.to_string())
+                }
+                WatchdogState::Watching | WatchdogState::Armed => None,
+            },
+        };
+        if let Some(fault) = fault {
+            self.give_up(fault);
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Options for a real robot, which is followed or driven.
+
+use std::io::{BufRead as _, IsTerminal as _, stdin};
+
+use crate::{
+    bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Shadow},
+    core::{RobotCommand, RobotMode, Table, WriteCommand as _},
+    real::{BodyGuard, RealRobot, RealRobotPlugin, RobotLink},
+    robot::RobotPlugin,
+    robot_body,
+};
+use bevy::prelude::*;
+use clap::Args;
+
+use super::{Failure, range::NumberRange, terminal::say};
+
+const SHARES: NumberRange<f64> = NumberRange::decimal(0.01, 1.0);
+
+/// The real robot.
+#[derive(Args, Clone)]
+pub(super) struct RealOptions {
+    /// Follow a real robot, such as `baxter:ros://HOST:11311` or `baxter:ws://HOST:9090`: it is only looked at, and the simulated robot is where it is
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        group = "real_robot",
+        conflicts_with = "real"
+    )]
+    shadow: Option<Address>,
+    /// Drive a real robot: whatever moves the simulated robot moves that one, and the simulated one is where it was measured (docs/real-robots.md)
+    #[arg(long, value_name = "ADDRESS", group = "real_robot")]
+    real: Option<Address>,
+    /// The limbs of the real robot that are driven, such as `left` or `left,right` [default: all]
+    #[arg(long, value_name = "LIMBS", value_delimiter = ',', requires = "real")]
+    arms: Vec<String>,
+    /// The share of the greatest speeds that its joints may have, from 0.01 to 1 [default: 0.3]
+    #[arg(long, value_name = "SHARE", value_parser = SHARES, requires = "real", default_value = "0.3", hide_default_value = true)]
+    speed: f64,
+    /// Let the real robot move to angles that are more than 0.2 rad away, such as those of an init script
+    #[arg(long, requires = "real")]
+    allow_moves: bool,
+    /// Switch its motors on at the start, if they are off
+    #[arg(long, requires = "real")]
+    enable: bool,
+    /// Let grippers that do not know their range find it out at the start, by closing and opening
+    #[arg(long, requires = "real")]
+    calibrate_grippers: bool,
+    /// Drive a robot of unknown software, too
+    #[arg(long, requires = "real")]
+    any_software: bool,
+    /// Drive it without asking first
+    #[arg(long, requires = "real")]
+    yes: bool,
+}
+
+impl RealOptions {
+    /// The address of the real robot, if there is one.
+    pub fn address(&self) -> Option<&Address> {
+        self.shadow.as_ref().or(self.real.as_ref())
+    }
+
+    /// Connects to the real robot, if there is one, and lets it stand in for the simulated one of an app.
+    pub fn attach(&self, app: &mut App, robot: &RobotPlugin, table: &Table) -> Result<(), Failure> {
+        let Some(address) = self.address() else {
+            return Ok(());
+        };
+        if robot.mode == RobotMode::Dynamic {
+            return Err(Failure::input(
+                "--dynamic: a real robot has motors of its own",
+            ));
+        }
+        let profile = BridgeProfile::shipped(&address.robot).map_err(Failure::input)?;
+        let link = match self.real {
+            None => RobotLink::Shadow(Shadow::connect(address, &profile).map_err(Failure::run)?),
+            Some(_) => RobotLink::Driven(Box::new(self.drive(address, &profile, robot, table)?)),
+        };
+        let has_camera = profile.cameras.iter().any(|camera| camera.name == HEAD);
+        let feed = match has_camera {
+            true => match PictureFeed::connect(address, &profile, HEAD) {
+                Ok(feed) => Some(feed),
+                Err(error) => {
+                    say(format_args!(
+                        "tabletop: no pictures of the real robot: {error}"
+                    ));
+                    None
+                }
+            },
+            false => None,
+        };
+        app.add_plugins(RealRobotPlugin { is_paced: true })
+            .insert_resource(RealRobot::new(link, feed));
+        app.world_mut().write_command(RobotCommand::Show(true));
+        Ok(())
+    }
+
+    fn drive(
+        &self,
+        address: &Address,
+        profile: &BridgeProfile,
+        robot: &RobotPlugin,
+        table: &Table,
+    ) -> Result<Bridge, Failure> {
+        let options = BridgeOptions {
+            limbs: self.arms.clone(),
+            speed: self.speed,
+            allow_moves: self.allow_moves,
+            enable: self.enable,
+            calibrate: self.calibrate_grippers,
+            any_software: self.any_software,
+        };
+        self.ask(address)?;
+        let mut bridge = Bridge::connect(address, profile, &options).map_err(Failure::run)?;
+        let body = robot_body(robot, table).map_err(Failure::run)?;
+        bridge.set_guard(BodyGuard::new(body, *table, profile.clone()));
+        bridge.arm().map_err(Failure::run)?;
+        Ok(bridge)
+    }
+
+    /// Asks whether the robot may move.
+    fn ask(&self, address: &Address) -> Result<(), Failure> {
+        if self.yes {
+            return Ok(());
+        }
+        let limbs = match self.arms.is_empty() {
+            true => "all limbs".to_owned(),
+            false => self.arms.join(", "),
+        };
+        if !stdin().is_terminal() {
+            return Err(Failure::input(
+                "a real robot is driven only after a question on the terminal, or with --yes",
+            ));
+        }
+        say(format_args!(
+            "tabletop: {address} will move ({limbs}, at most {:.0} % of the greatest speed). Is somebody at the emergency stop, and nobody within reach? [y/N]",
+            100.0 * self.speed
+        ));
+        let mut answer = String::new();
+        let read = stdin().lock().read_line(&mut answer);
+        read.map_err(|error| Failure::run(format!("standard input: {error}")))?;
+        match answer.trim() {
+            "y" | "Y" | "yes" => Ok(()),
+            _ => Err(Failure::input("nothing was moved")),
+        }
+    }
+}
+
+const HEAD: &str = "head";
+
+/// The failure of a real robot that is followed or driven no longer.
+pub(super) fn check(app: &App) -> Result<(), Failure> {
+    let real = app.world().get_resource::<RealRobot>();
+    let end = real.and_then(RealRobot::end);
+    end.map_or(Ok(()), |end| {
+        Err(Failure::run(format!("the real robot: {end}")))
+    })
+}
+
+/// Lets go of the real robot: one that was driven holds its position.
+pub(super) fn release(app: &mut App) {
+    let real = app.world_mut().remove_resource::<RealRobot>();
+    if let Some(reason) = real.and_then(RealRobot::stop) {
+        say(format_args!("tabletop: the real robot rests: {reason}"));
+    }
+}
