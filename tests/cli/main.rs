@@ -21,6 +21,7 @@ mod multiply;
 mod originals;
 mod policy;
 mod ranges;
+mod real;
 mod replay;
 mod report;
 mod require;

@@ -242,6 +242,12 @@ impl Bridge {
         lock(&self.shared).state.clone()
     }
 
+    /// Whether a limb, by its name, is driven.
+    pub fn drives(&self, limb: &str) -> bool {
+        let place = self.profile.limb(limb);
+        place.is_some_and(|place| self.driven.contains(&place))
+    }
+
     /// The robot's names for the joints of a limb, from its base to its tip.
     pub fn joints_of(&self, limb: &str) -> impl Iterator<Item = &str> {
         let place = self.profile.limb(limb);

@@ -7,7 +7,9 @@ use std::{
 };
 
 use bevy::prelude::*;
-use tabletop_bridge::{Bridge, FARTHEST_STEP, LimbTarget, RobotState, RobotTarget, WatchdogState};
+use tabletop_bridge::{
+    Bridge, FARTHEST_STEP, LimbTarget, RobotState, RobotTarget, TargetError, WatchdogState,
+};
 use tabletop_core::{
     Drive, IssuedCommand, JointName, RobotCommand, RobotLayout, SimCommand, TICK_SECONDS,
 };
@@ -31,6 +33,8 @@ pub(crate) struct LastingOrders {
     openings: BTreeMap<String, f64>,
     /// The head's angle as it was last ordered.
     head: Option<f64>,
+    /// The reason for which the last target was vetoed, if it was.
+    vetoed: Option<String>,
 }
 
 /// Takes the orders to joints out of the commands of this tick. A real robot that is driven gets them.
@@ -58,8 +62,13 @@ pub(crate) fn take_over(
     let Some(bridge) = real.bridge() else {
         return;
     };
-    let result = target_of(&drives, &layout, &state, &mut lasting)
-        .and_then(|(target, is_far)| follow(bridge, target, is_far));
+    let result =
+        target_of(&drives, &layout, &state, &mut lasting).and_then(|(mut target, is_far)| {
+            // What is said to the others reaches nobody.
+            target.limbs.retain(|limb, _| bridge.drives(limb));
+            target.grippers.retain(|limb, _| bridge.drives(limb));
+            follow(bridge, target, is_far, &mut lasting.vetoed)
+        });
     if let Err(reason) = result {
         real.give_up(reason);
     }
@@ -168,25 +177,50 @@ fn target_of(
 }
 
 /// Lets the robot follow a target. One that is far is a move: it takes its time, in which nothing else happens.
-fn follow(bridge: &mut Bridge, target: RobotTarget, is_far: bool) -> Result<(), String> {
-    aim(bridge, target.clone())?;
+fn follow(
+    bridge: &mut Bridge,
+    target: RobotTarget,
+    is_far: bool,
+    vetoed: &mut Option<String>,
+) -> Result<(), String> {
+    aim(bridge, target.clone(), vetoed)?;
     let end = Instant::now() + Duration::from_secs(MOVE_SECONDS);
     while is_far && !has_arrived(bridge, &target) {
+        if let Some(why) = vetoed {
+            return Err(format!("it cannot move there: {why}"));
+        }
         if Instant::now() > end {
             return Err(format!("a move takes longer than {MOVE_SECONDS} s"));
         }
         sleep(MOVE_PERIOD);
-        aim(bridge, target.clone())?;
+        aim(bridge, target.clone(), vetoed)?;
     }
     Ok(())
 }
 
-fn aim(bridge: &mut Bridge, target: RobotTarget) -> Result<(), String> {
-    let aimed = bridge.aim(target);
-    aimed.map_err(|error| match bridge.watchdog() {
-        WatchdogState::Ramping(reason) | WatchdogState::Held(reason) => reason.to_string(),
-        WatchdogState::Watching | WatchdogState::Armed => error.to_string(),
-    })
+/// Sends a target. One that the guard vetoes makes the joints rest until another one passes.
+fn aim(
+    bridge: &mut Bridge,
+    target: RobotTarget,
+    vetoed: &mut Option<String>,
+) -> Result<(), String> {
+    match bridge.aim(target) {
+        Ok(()) => {
+            *vetoed = None;
+            Ok(())
+        }
+        Err(TargetError::Vetoed(why)) => {
+            if vetoed.as_ref() != Some(&why) {
+                warn!("the real robot rests: {why}");
+            }
+            *vetoed = Some(why);
+            Ok(())
+        }
+        Err(error) => Err(match bridge.watchdog() {
+            WatchdogState::Ramping(reason) | WatchdogState::Held(reason) => reason.to_string(),
+            WatchdogState::Watching | WatchdogState::Armed => error.to_string(),
+        }),
+    }
 }
 
 fn has_arrived(bridge: &Bridge, target: &RobotTarget) -> bool {

@@ -1,0 +1,128 @@
+//! `tabletop run --shadow` and `--real`, beside a mock robot behind a mock rosbridge server.
+
+#[path = "../../crates/tabletop_bridge/tests/rosbridge/mock.rs"]
+#[expect(dead_code, reason = "it has more than is needed here")]
+mod mock;
+
+use std::fs;
+
+use mock::{MockServer, Trouble};
+use tabletop::core::RobotLayout;
+
+use crate::support::{command, place, stderr, stdout, tabletop};
+
+/// A Baxter that stands as the simulated one does at first.
+fn baxter() -> MockServer {
+    let server = MockServer::start("baxter");
+    for joint in &RobotLayout::baxter().joints {
+        let mut robot = server.robot();
+        if robot.angles.contains_key(&joint.urdf_name) {
+            robot.angles.insert(joint.urdf_name.clone(), joint.home);
+        }
+    }
+    server
+}
+
+/// A script that turns the joint S0 of both arms, and ends after a second.
+fn turning_script(name: &str) -> String {
+    let file = place(name);
+    let text = "
+time = 0.0
+def init(aux):
+    pass
+def callback(sensor, motor, aux):
+    global time
+    time += sensor.timeElapsed
+    motor.jointVelocities = [[0.3] + [0.0] * 6] * 2
+    if time > 1:
+        print('turned to', sensor.jointAngles[0][0], hasattr(sensor, 'objects'))
+        aux.exit = True
+";
+    fs::write(&file, text).unwrap();
+    format!("python:{}", file.to_str().unwrap())
+}
+
+#[test]
+fn a_real_robot_is_followed_and_recorded() {
+    let server = baxter();
+    let home = server.robot().angles["left_s0"];
+    server.robot().angles.insert("left_s0".into(), home + 0.25);
+    let demo = place("real_shadow");
+    let demo = demo.to_str().unwrap();
+    let address = server.address().to_string();
+    let arguments = [
+        "run",
+        "--shadow",
+        &address,
+        "--seconds",
+        "1",
+        "--record",
+        demo,
+    ];
+    let output = tabletop(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let session = fs::read_to_string(format!("{demo}/session.jsonl")).unwrap();
+    assert!(
+        session.contains(&format!("\"real\":\"{address}\"")),
+        "{session}"
+    );
+    let joints = fs::read_to_string(format!("{demo}/joints.csv")).unwrap();
+    let [header, .., last] = &joints.lines().collect::<Vec<_>>()[..] else {
+        panic!("{joints}");
+    };
+    let column = header.split(',').position(|it| it == "left_s0").unwrap();
+    let angle: f64 = last.split(',').nth(column).unwrap().parse().unwrap();
+    assert!((angle - home - 0.25).abs() < 1e-3, "{angle}");
+    // It was sent nothing.
+    assert!(server.robot().modes.is_empty());
+}
+
+#[test]
+fn a_script_moves_a_real_robot_as_the_simulated_one() {
+    let server = baxter();
+    let home = ["left_s0", "right_s0"].map(|joint| server.robot().angles[joint]);
+    let script = turning_script("real_turning.py");
+    let address = server.address().to_string();
+    let arguments = [
+        "run", "--real", &address, "--arms", "left", "--script", &script,
+    ];
+    let refused = tabletop(&arguments);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("--yes"), "{}", stderr(&refused));
+    assert!(server.robot().modes.is_empty());
+
+    let output = tabletop(&[&arguments[..], &["--yes"]].concat());
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}{}", stdout(&output));
+    let turned = said
+        .lines()
+        .find_map(|line| line.split("turned to ").nth(1));
+    let (angle, has_objects) = turned.unwrap().split_once(' ').unwrap();
+    let way = angle.parse::<f64>().unwrap() - home[0];
+    assert!((0.15..0.35).contains(&way), "{way}");
+    assert_eq!(has_objects, "False");
+    assert!(said.contains("the real robot rests"), "{said}");
+    assert_eq!(server.robot().angles["right_s0"], home[1]);
+}
+
+#[test]
+fn an_emergency_stop_ends_the_run_with_its_reason() {
+    let server = baxter();
+    let script = turning_script("real_stopped.py");
+    let address = server.address().to_string();
+    let arguments = ["run", "--real", &address, "--yes", "--script", &script];
+    let run = command(&arguments)
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let home = server.robot().angles["left_s0"];
+    let start = std::time::Instant::now();
+    while (server.robot().angles["left_s0"] - home).abs() < 0.02 {
+        assert!(start.elapsed().as_secs() < 60, "it does not move");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    server.robot().trouble = Trouble::EmergencyStop;
+    let output = run.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("emergency"), "{}", stderr(&output));
+}
