@@ -119,6 +119,7 @@ fn add_parts(app: &mut App) {
         files::plugin,
         panels::objects::plugin,
         panels::browser::plugin,
+        panels::quit::plugin,
         input::mechanism_keys::plugin,
         panels::context_menu::plugin,
         panels::caption::plugin,

@@ -15,6 +15,7 @@ pub(crate) mod messages;
 pub(crate) mod objects;
 pub(crate) mod panel;
 pub(crate) mod pause;
+pub(crate) mod quit;
 pub(crate) mod robot;
 pub(crate) mod status;
 #[cfg(test)]

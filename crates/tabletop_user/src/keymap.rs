@@ -181,7 +181,7 @@ pub enum KeyboardFocus {
     /// The world: keys do their actions.
     #[default]
     World,
-    /// An overlay, such as an open list: Esc closes it.
+    /// An overlay, such as a dialog, a menu or an open list: keys are its own, and Esc closes it.
     Overlay,
     /// A field for text or a number: keys write into it.
     Text,
@@ -192,8 +192,7 @@ impl KeyboardFocus {
     pub fn leaves(self, key: KeyCode) -> bool {
         match self {
             Self::World => true,
-            Self::Overlay => key != KeyCode::Escape,
-            Self::Text => binding::is_function_key(key),
+            Self::Overlay | Self::Text => binding::is_function_key(key),
         }
     }
 }
@@ -381,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_write_while_text_is_typed_and_escape_closes_an_overlay() {
+    fn keys_reach_only_what_is_in_front() {
         let mut world = world();
         let keys = [Space, KeyR, Escape, F1];
         let asked = |world: &mut World, focus: KeyboardFocus| {
@@ -396,8 +395,7 @@ mod tests {
         ];
         let all = [pause, quit, robot, help];
         assert_eq!(asked(&mut world, KeyboardFocus::World), all);
-        let but_quit = [pause, robot, help];
-        assert_eq!(asked(&mut world, KeyboardFocus::Overlay), but_quit);
+        assert_eq!(asked(&mut world, KeyboardFocus::Overlay), [help]);
         assert_eq!(asked(&mut world, KeyboardFocus::Text), [help]);
     }
 

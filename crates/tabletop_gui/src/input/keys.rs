@@ -1,33 +1,40 @@
 //! Keys of the whole program: Space pauses, Esc quits (report section 2.4).
 
 use bevy::prelude::*;
-use tabletop_core::{Actor, ClockCommand, CommandWriter, Paused};
-use tabletop_user::{Action, KeySystems, was_struck};
+use tabletop_core::{Actor, ClockCommand, CommandWriter, Paused, Recording};
+use tabletop_user::{Action, Editing, KeySystems, was_struck};
 
-use crate::panels::context_menu::ContextMenu;
+use crate::panels::{context_menu::ContextMenu, quit::QuitQuestion};
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<ContextMenu>().add_systems(
-        RunFixedMainLoop,
-        (
-            toggle_pause.run_if(was_struck(Action::Pause)),
-            quit.run_if(was_struck(Action::Quit)),
-        )
-            .in_set(KeySystems),
-    );
+    app.init_resource::<ContextMenu>()
+        .init_resource::<QuitQuestion>()
+        .init_resource::<Recording>()
+        .init_resource::<Editing>()
+        .add_systems(
+            RunFixedMainLoop,
+            (
+                toggle_pause.run_if(was_struck(Action::Pause)),
+                quit.run_if(was_struck(Action::Quit)),
+            )
+                .in_set(KeySystems),
+        );
 }
 
 fn toggle_pause(paused: Res<Paused>, mut commands: CommandWriter) {
     commands.write(Actor::Key, ClockCommand::SetPaused(!paused.0));
 }
 
-/// Closes the menu that is open, or ends the program.
+/// Closes the menu that is open, or ends the program; asks before that if a recording runs, or edits are not saved.
 fn quit(
     mut exit: MessageWriter<AppExit>,
     mut menu: ResMut<ContextMenu>,
     mut commands: CommandWriter,
+    mut question: ResMut<QuitQuestion>,
+    recording: Res<Recording>,
+    editing: Res<Editing>,
 ) {
-    if !menu.close(&mut commands) {
+    if !menu.close(&mut commands) && !question.asks(&recording, &editing) {
         exit.write(AppExit::Success);
     }
 }
@@ -86,6 +93,14 @@ mod tests {
             keys.clear();
             assert!(is_paused(&app));
         }
+    }
+
+    #[test]
+    fn escape_does_not_quit_while_a_recording_runs() {
+        let mut app = app();
+        app.insert_resource(Recording(true));
+        strike(&mut app, KeyCode::Escape);
+        assert_eq!(app.should_exit(), None);
     }
 
     #[test]

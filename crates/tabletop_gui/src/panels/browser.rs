@@ -8,7 +8,7 @@ use std::{
 use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{Id, Label, Modal, RichText, ScrollArea, TextEdit, Ui},
+    egui::{Id, Key, Label, Modal, RichText, ScrollArea, TextEdit, Ui},
 };
 
 use crate::{
@@ -80,6 +80,8 @@ struct FileSearch {
     name: String,
     /// The file that would be replaced.
     replaces: Option<PathBuf>,
+    /// True until it is shown first, and takes the keyboard.
+    is_new: bool,
 }
 
 /// The entries of a folder that can be chosen.
@@ -128,6 +130,7 @@ impl Browser {
             folder: FolderContent::read(folder),
             name: purpose.file_name().into(),
             replaces: None,
+            is_new: true,
         });
     }
 
@@ -182,14 +185,20 @@ fn show(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
     ui.separator();
     let chosen = entries(ui, search);
     ui.separator();
+    let mut is_entered = ui.memory(|memory| memory.focused().is_none());
     if !is_opening {
         ui.horizontal(|ui| {
             let label = ui.label("File name:");
             let field = TextEdit::singleline(&mut search.name).desired_width(f32::INFINITY);
-            ui.add(field).labelled_by(label.id);
+            let field = ui.add(field).labelled_by(label.id);
+            is_entered |= field.lost_focus();
+            if std::mem::take(&mut search.is_new) {
+                field.request_focus();
+            }
         });
     }
-    let mut answer = None;
+    is_entered &= ui.input(|input| input.key_pressed(Key::Enter));
+    let mut answer = (is_entered && !search.name.trim().is_empty()).then(|| search.choose());
     ui.horizontal(|ui| {
         let is_named = !search.name.trim().is_empty();
         if button(ui, is_named, verb, title).clicked() {
@@ -450,6 +459,20 @@ mod tests {
             harness.state().requests,
             [FileRequest::Save(folder.join("a.xml"))]
         );
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn the_name_field_has_the_keyboard_and_enter_saves() {
+        let folder = folder("entered");
+        let mut harness = harness(Purpose::Save, &folder);
+        harness.run();
+        assert!(harness.get_by_label("File name:").is_focused());
+        harness.state_mut().browser.search.as_mut().unwrap().name = "new".into();
+        harness.key_press(Key::Enter);
+        harness.run();
+        let expected = FileRequest::Save(folder.join("new.xml"));
+        assert_eq!(harness.state().requests, [expected]);
         fs::remove_dir_all(folder).unwrap();
     }
 
