@@ -32,6 +32,7 @@ use tabletop_gui::{Preferences, PresetSeeds, WidgetListPlugin, keymap_file::Keym
 use self::opening::{Beginning, Opening};
 use crate::{
     TabletopSimPlugins, TabletopWindowPlugins,
+    history::HistoryPlugin,
     recorder::{HandPictures, RecorderPlugin},
     replay::{PlaybackPlugin, Replay},
     robot::RobotPlugin,
@@ -126,7 +127,13 @@ fn build(options: WindowOptions) -> App {
             .disable::<LogPlugin>()
             .disable::<TerminalCtrlCHandlerPlugin>(),
         match &options.show {
-            Show::Task(_) => TabletopSimPlugins.build().set(options.robot),
+            Show::Task(_) => TabletopSimPlugins
+                .build()
+                .set(options.robot)
+                .set(HistoryPlugin {
+                    keeps_always: true,
+                    ..default()
+                }),
             Show::Replay(replay) => replay.plugins(),
         }
         .set(RecorderPlugin {

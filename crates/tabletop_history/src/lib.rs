@@ -1,7 +1,7 @@
 //! Undo and redo: the world as it was at the beginning of a recording's segment, bit for bit.
 //!
 //! Each plugin registers its own part, as in `bevy_ggrs`: components of the entities marked [`Rollback`](tabletop_core::Rollback),
-//! resources, and any other state on which later ticks depend ([`RollbackState`]). While a recording runs, [`begin_segment`]
+//! resources, and any other state on which later ticks depend ([`RollbackState`]). While a recording runs, or [always](HistoryPlugin::keeps_always), [`begin_segment`]
 //! keeps a [`WorldSnapshot`]; [`HistoryCommand`](tabletop_core::HistoryCommand)s
 //! go back and forth between these. Snapshots share unchanged parts.
 //!
@@ -38,7 +38,7 @@ pub use removal::{KeepRemoved, Parked, despawn_or_park, drop_removed};
 pub use rollback::{
     RollbackApp, RollbackRegistry, RollbackState, RollingBack, Since, is_rolling_back,
 };
-pub use segments::begin_segment;
+pub use segments::{begin_change, begin_segment};
 pub use snapshot::WorldSnapshot;
 
 /// The names that most users of this crate need.
@@ -57,12 +57,15 @@ use crate::segments::{Segments, undo_and_redo};
 pub struct HistoryPlugin {
     /// Limit on the memory of snapshots, in bytes. Beyond it, the oldest segment can no longer be undone.
     pub most_bytes: usize,
+    /// True if changes outside recordings can be undone, too. A recording that begins or ends forgets what was before.
+    pub keeps_always: bool,
 }
 
 impl HistoryPlugin {
     /// 512 MB.
     pub const DEFAULT: Self = Self {
         most_bytes: 512 * 1024 * 1024,
+        keeps_always: false,
     };
 }
 
@@ -76,7 +79,7 @@ impl Plugin for HistoryPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<KeepRemoved>()
             .register_type::<Parked>()
-            .insert_resource(Segments::new(self.most_bytes))
+            .insert_resource(Segments::new(self.most_bytes, self.keeps_always))
             .init_resource::<KeepRemoved>()
             .rollback_component::<Transform>()
             .rollback_component::<GlobalTransform>()

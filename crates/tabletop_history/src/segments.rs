@@ -28,6 +28,10 @@ pub(crate) struct Segments {
     most_bytes: usize,
     /// Number of segments that could not be kept.
     dropped: usize,
+    /// True if segments are kept outside recordings, too.
+    keeps_always: bool,
+    /// True if those that are kept are of a recording.
+    are_of_recording: bool,
 }
 
 /// A segment that was undone.
@@ -37,13 +41,15 @@ struct Undone {
 }
 
 impl Segments {
-    pub(crate) const fn new(most_bytes: usize) -> Self {
+    pub(crate) const fn new(most_bytes: usize, keeps_always: bool) -> Self {
         Self {
             undoable: VecDeque::new(),
             redoable: Vec::new(),
             last: None,
             most_bytes,
             dropped: 0,
+            keeps_always,
+            are_of_recording: false,
         }
     }
 
@@ -74,13 +80,23 @@ impl Segments {
     }
 }
 
-/// Reports that a hand is about to act because of a command. While a recording runs, the world before the act is kept, so that it can be
+/// Reports that a hand is about to act because of a command. While a recording runs, or always, the world before the act is kept, so that it can be
 /// undone. Without [`HistoryPlugin`](crate::HistoryPlugin), nothing is kept.
 pub fn begin_segment(world: &mut World, cause: CommandId) {
     world.write_message(SimFact::History(HistoryFact::SegmentBegun { cause }));
-    if !world.resource::<Recording>().0 || !world.contains_resource::<Segments>() {
-        return;
+    if world.contains_resource::<Segments>() && is_kept(world) {
+        keep(world);
     }
+}
+
+/// Keeps the world before a change that no hand makes, such as that of a whole scene, so that it can be undone. In a recording, it belongs to a segment.
+pub fn begin_change(world: &mut World) {
+    if world.contains_resource::<Segments>() && is_kept(world) && !world.resource::<Recording>().0 {
+        keep(world);
+    }
+}
+
+fn keep(world: &mut World) {
     world.resource_mut::<KeepRemoved>().for_undo = true;
     let begin = snapshot(world);
     let mut segments = world.resource_mut::<Segments>();
@@ -90,14 +106,24 @@ pub fn begin_segment(world: &mut World, cause: CommandId) {
     publish(world);
 }
 
+/// True if segments are kept now. Forgets those from before a recording that has begun, and those of one that has ended.
+fn is_kept(world: &mut World) -> bool {
+    let is_recording = world.resource::<Recording>().0;
+    let segments = world.resource::<Segments>();
+    let is_kept = is_recording || segments.keeps_always;
+    if !is_kept || segments.are_of_recording != is_recording {
+        forget(world);
+        world.resource_mut::<Segments>().are_of_recording = is_recording;
+    }
+    is_kept
+}
+
 /// Carries out undo and redo, and forgets everything when the recording has ended.
 pub(crate) fn undo_and_redo(
     world: &mut World,
     reader: &mut SystemState<MessageReader<IssuedCommand>>,
 ) -> Result {
-    if !world.resource::<Recording>().0 {
-        forget(world);
-    }
+    is_kept(world);
     carry_out(world, reader, |world, cause, command| {
         let fact = match command {
             HistoryCommand::Undo => undo(world, cause),
@@ -110,10 +136,14 @@ pub(crate) fn undo_and_redo(
 }
 
 fn undo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
-    let Some(begin) = world.resource_mut::<Segments>().undoable.pop_back() else {
-        return Err(
-            "there is nothing to undo: only acts of the present recording can be undone".into(),
-        );
+    let mut segments = world.resource_mut::<Segments>();
+    let Some(begin) = segments.undoable.pop_back() else {
+        return Err(match segments.keeps_always {
+            true => "there is nothing to undo".into(),
+            false => {
+                "there is nothing to undo: only acts of the present recording can be undone".into()
+            }
+        });
     };
     let end = snapshot(world);
     restore(world, &begin);
@@ -191,7 +221,10 @@ mod tests {
     /// An app with lamps, and a history limited to this many bytes.
     fn app(most_bytes: usize) -> (App, Vec<Entity>) {
         let mut app = App::new();
-        let history = HistoryPlugin { most_bytes };
+        let history = HistoryPlugin {
+            most_bytes,
+            ..HistoryPlugin::DEFAULT
+        };
         app.add_plugins((MinimalPlugins, CorePlugin::default(), history))
             .rollback_component::<Lamp>()
             .start();
@@ -210,6 +243,30 @@ mod tests {
     fn tell(app: &mut App, command: HistoryCommand) {
         app.world_mut().write_command(command);
         app.step(1);
+    }
+
+    #[test]
+    fn what_is_kept_always_is_undone_without_a_recording_and_forgotten_when_one_begins() {
+        let (mut app, lamps) = app(usize::MAX);
+        app.insert_resource(Recording(false));
+        app.step(1);
+        begin_change(app.world_mut());
+        assert_eq!(app.world().resource::<History>().undoable, 0);
+        app.world_mut().resource_mut::<Segments>().keeps_always = true;
+        begin_change(app.world_mut());
+        assert_eq!(app.world().resource::<History>().undoable, 1);
+        app.world_mut().entity_mut(lamps[3]).insert(Lamp([1; 1000]));
+        tell(&mut app, HistoryCommand::Undo);
+        assert_eq!(app.world().get(lamps[3]), Some(&Lamp([0; 1000])));
+        tell(&mut app, HistoryCommand::Redo);
+        assert_eq!(app.world().get(lamps[3]), Some(&Lamp([1; 1000])));
+        app.insert_resource(Recording(true));
+        assert_eq!(begin(&mut app).undoable, 1);
+        begin_change(app.world_mut());
+        assert_eq!(app.world().resource::<History>().undoable, 1);
+        app.insert_resource(Recording(false));
+        app.step(1);
+        assert_eq!(app.world().resource::<History>().undoable, 0);
     }
 
     #[test]

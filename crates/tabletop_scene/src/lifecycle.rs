@@ -12,7 +12,7 @@ use tabletop_core::{
     Cause, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneFact, SceneSpec,
     SimFact, Table, carry_out,
 };
-use tabletop_history::Parked;
+use tabletop_history::{Parked, begin_change};
 use tabletop_physics::{remove_object, renew_if_empty};
 
 use crate::{compound::Compounds, preset};
@@ -96,6 +96,10 @@ pub(crate) fn carry_out_commands(
     reader: &mut SystemState<MessageReader<IssuedCommand>>,
 ) -> Result {
     carry_out(world, reader, |world, _, command| {
+        let mut tables = world.query_filtered::<(), With<Table>>();
+        if tables.iter(world).next().is_some() {
+            begin_change(world);
+        }
         match command {
             SceneCommand::Load(path) => {
                 let path = path.display();

@@ -12,7 +12,7 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Label, RichText, ScrollArea, TextStyle, Ui},
 };
-use tabletop_core::{RecordingFact, SceneFact, SimFact};
+use tabletop_core::{History, HistoryFact, RecordingFact, SceneFact, SimFact};
 
 use crate::{
     panels::{Panel, Panels},
@@ -67,13 +67,18 @@ enum Request {
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Notices>()
+        .init_resource::<History>()
         .init_resource::<MessageList>()
         .init_resource::<Clipboard>()
         .add_systems(Update, (note_facts, note_clipboard))
         .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
-fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
+fn note_facts(
+    mut facts: MessageReader<SimFact>,
+    history: Res<History>,
+    mut notices: ResMut<Notices>,
+) {
     for fact in facts.read() {
         match fact {
             SimFact::Scene(SceneFact::TaskLoaded { faults, .. }) => {
@@ -94,11 +99,25 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
                 let text = format!("{folder}: the earlier recording there is now {aside}");
                 notices.add(Tone::Event, &text);
             }
+            SimFact::Recording(RecordingFact::Finished { folder, .. }) => {
+                let text = format!("the recording is in {}", folder.display());
+                notices.append(Tone::Event, &text);
+            }
+            SimFact::History(HistoryFact::Undone { .. }) => {
+                let text = match history.undoable {
+                    0 => "undone; nothing is left to undo".to_owned(),
+                    left => format!("undone; {left} more can be undone"),
+                };
+                notices.append(Tone::Event, &text);
+            }
+            SimFact::History(HistoryFact::Redone { .. }) => {
+                notices.append(Tone::Event, "brought back");
+            }
             SimFact::Scene(SceneFact::ObjectCreated { .. } | SceneFact::ObjectDeleted { .. })
-            | SimFact::History(_)
+            | SimFact::History(HistoryFact::SegmentBegun { .. })
             | SimFact::Mechanism(_)
             | SimFact::Hand(_)
-            | SimFact::Recording(RecordingFact::Started { .. } | RecordingFact::Finished { .. })
+            | SimFact::Recording(RecordingFact::Started { .. })
             | SimFact::Robot(_) => {}
         }
     }
