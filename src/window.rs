@@ -8,6 +8,7 @@ mod frame_rate;
 mod idle;
 mod no_window;
 mod opening;
+mod real_robot;
 mod redraw;
 mod replay;
 mod screenshot;
@@ -33,6 +34,7 @@ use self::opening::{Beginning, Opening};
 use crate::{
     TabletopSimPlugins, TabletopWindowPlugins,
     history::HistoryPlugin,
+    real::{RealRobot, RealRobotPlugin},
     recorder::{HandPictures, RecorderPlugin},
     replay::{PlaybackPlugin, Replay},
     robot::RobotPlugin,
@@ -102,7 +104,20 @@ const LONGEST_WAIT: Duration = Duration::from_millis(50);
 /// There is no display, or no graphics driver, or a library is missing. Then nothing has been started, and no logger
 /// has been set up: the simulation can be run without a window instead.
 pub fn run(options: WindowOptions) -> Result<AppExit, NoWindow> {
+    run_beside(options, None)
+}
+
+/// The same beside a real robot, if there is one.
+///
+/// # Errors
+///
+/// As [`run`].
+pub fn run_beside(options: WindowOptions, real: Option<RealRobot>) -> Result<AppExit, NoWindow> {
     let mut app = no_window::catch(|| build(options))?;
+    if let Some(real) = real {
+        app.add_plugins((RealRobotPlugin::default(), real_robot::plugin))
+            .insert_resource(real);
+    }
     app.add_plugins((PanicHandlerPlugin, log(), TerminalCtrlCHandlerPlugin));
     Ok(app.run())
 }

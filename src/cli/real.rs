@@ -69,26 +69,17 @@ impl RealOptions {
                 "--dynamic: a real robot has motors of its own",
             ));
         }
-        let profile = BridgeProfile::shipped(&address.robot).map_err(Failure::input)?;
-        let link = match self.real {
-            None => RobotLink::Shadow(Shadow::connect(address, &profile).map_err(Failure::run)?),
-            Some(_) => RobotLink::Driven(Box::new(self.drive(address, &profile, robot, table)?)),
-        };
-        let has_camera = profile.cameras.iter().any(|camera| camera.name == HEAD);
-        let feed = match has_camera {
-            true => match PictureFeed::connect(address, &profile, HEAD) {
-                Ok(feed) => Some(feed),
-                Err(error) => {
-                    say(format_args!(
-                        "tabletop: no pictures of the real robot: {error}"
-                    ));
-                    None
-                }
-            },
-            false => None,
+        let real = match self.real {
+            None => follow(address)?,
+            Some(_) => {
+                let profile = profile(address)?;
+                let bridge = self.drive(address, &profile, robot, table)?;
+                let feed = feed(address, &profile);
+                RealRobot::new(RobotLink::Driven(Box::new(bridge)), feed)
+            }
         };
         app.add_plugins(RealRobotPlugin { is_paced: true })
-            .insert_resource(RealRobot::new(link, feed));
+            .insert_resource(real);
         app.world_mut().write_command(RobotCommand::Show(true));
         Ok(())
     }
@@ -144,7 +135,33 @@ impl RealOptions {
     }
 }
 
-const HEAD: &str = "head";
+/// A real robot that is only looked at.
+pub(super) fn follow(address: &Address) -> Result<RealRobot, Failure> {
+    let profile = profile(address)?;
+    let shadow = Shadow::connect(address, &profile).map_err(Failure::run)?;
+    Ok(RealRobot::new(
+        RobotLink::Shadow(shadow),
+        feed(address, &profile),
+    ))
+}
+
+fn profile(address: &Address) -> Result<BridgeProfile, Failure> {
+    BridgeProfile::shipped(&address.robot).map_err(Failure::input)
+}
+
+/// The pictures of the head camera, if the robot has one that shows them.
+fn feed(address: &Address, profile: &BridgeProfile) -> Option<PictureFeed> {
+    const HEAD: &str = "head";
+    let mut cameras = profile.cameras.iter();
+    cameras.find(|camera| camera.name == HEAD)?;
+    let feed = PictureFeed::connect(address, profile, HEAD);
+    feed.inspect_err(|error| {
+        say(format_args!(
+            "tabletop: no pictures of the real robot: {error}"
+        ));
+    })
+    .ok()
+}
 
 /// The failure of a real robot that is followed or driven no longer.
 pub(super) fn check(app: &App) -> Result<(), Failure> {

@@ -46,6 +46,10 @@ pub(super) struct WindowArgs {
     engine: EngineOptions,
     #[command(flatten)]
     robot: RobotOptions,
+    /// Follow a real robot, such as `baxter:ros://HOST:11311` or `baxter:ws://HOST:9090`: it is only looked at, and the simulated robot is where it is
+    #[cfg(feature = "window")]
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "dynamic")]
+    shadow: Option<tabletop_bridge::Address>,
     #[cfg(feature = "window")]
     #[command(flatten)]
     hand_cameras: super::hand_cameras::HandCameraOption,
@@ -86,12 +90,13 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     }
     let robot = args.robot.plugin()?;
     let takes_picture = args.screenshot.is_some();
+    let real = args.shadow.as_ref().map(super::real::follow).transpose()?;
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         allowed: args.allowed.folders.clone(),
         hand_pictures: args.hand_cameras.of(&robot)?,
         robot,
-        show_robot: args.robot.show_robot,
+        show_robot: args.robot.show_robot || real.is_some(),
         scripts: args.engine.settings(args.script.as_deref())?,
         display,
         keys: args.keys,
@@ -102,7 +107,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
         }),
         widgets: args.widgets,
     };
-    match window::run(options) {
+    match window::run_beside(options, real) {
         Ok(exit) => Ok(exit_code(exit, result)),
         Err(no_window) if takes_picture => Err(Failure::run(no_window)),
         Err(no_window) => {
