@@ -5,7 +5,7 @@ use std::io::{BufRead as _, IsTerminal as _, stdin};
 use crate::{
     bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Shadow},
     core::{RobotCommand, RobotMode, Table, WriteCommand as _},
-    real::{BodyGuard, RealRobot, RealRobotPlugin, RobotLink},
+    real::{BodyGuard, RealLink, RealRobot, RealRobotPlugin},
     robot::RobotPlugin,
     robot_body,
 };
@@ -75,7 +75,7 @@ impl RealOptions {
                 let profile = profile(address)?;
                 let bridge = self.drive(address, &profile, robot, table)?;
                 let feed = feed(address, &profile);
-                RealRobot::new(RobotLink::Driven(Box::new(bridge)), feed)
+                RealRobot::new(RealLink::Driven(Box::new(bridge)), feed)
             }
         };
         app.add_plugins(RealRobotPlugin { is_paced: true })
@@ -140,7 +140,7 @@ pub(super) fn follow(address: &Address) -> Result<RealRobot, Failure> {
     let profile = profile(address)?;
     let shadow = Shadow::connect(address, &profile).map_err(Failure::run)?;
     Ok(RealRobot::new(
-        RobotLink::Shadow(shadow),
+        RealLink::Shadow(shadow),
         feed(address, &profile),
     ))
 }

@@ -5,7 +5,7 @@ use tabletop_camera::{Camera, FiguresSeen, Scene, VisibleWorld};
 use tabletop_core::{HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, SensorImage};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, with_guides};
 
-use crate::{PerceivedObject, Perception, PerceptionDemand};
+use crate::belief::{PerceivedObject, Perception, PerceptionDemand};
 
 /// The eyes, and what they know.
 #[derive(Resource, Default)]
@@ -40,7 +40,7 @@ pub(crate) fn perceive(
     mut eyesight: ResMut<Eyesight>,
     mut perception: ResMut<Perception>,
 ) {
-    *demand.0.get_mut() = false;
+    demand.clear();
     let known = knowledge.of(&world);
     if known != eyesight.known || image.tick < perception.tick || eyesight.eyes.is_none() {
         // Where objects were is no longer true if time has gone back.

@@ -1,7 +1,7 @@
 //! A real robot beside the simulated one.
 //!
 //! With [`RealRobotPlugin`], the simulated robot is where the real one was measured to be, so everything that looks at the simulated one, such as scripts, the recorder and the
-//! window, sees the real one. A robot that is only followed ([`RobotLink::Shadow`]) is sent nothing. One that is driven ([`RobotLink::Driven`]) gets every order that
+//! window, sees the real one. A robot that is only followed ([`RealLink::Shadow`]) is sent nothing. One that is driven ([`RealLink::Driven`]) gets every order that
 //! anybody gives to the simulated robot's joints, watched over by `tabletop_bridge`.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -17,7 +17,7 @@ use bevy::prelude::*;
 use tabletop_core::{OrderSystems, PictureSystems, SensorImage, SimSystems, TickSystems};
 
 pub use body_guard::BodyGuard;
-pub use robot::{RealRobot, RobotLink};
+pub use robot::{RealLink, RealRobot};
 
 /// Lets a [`RealRobot`] stand in for the simulated one. Insert that resource, too.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,7 +44,7 @@ impl Plugin for RealRobotPlugin {
                 .run_if(resource_exists::<RealRobot>),
         );
         if self.is_paced {
-            app.init_resource::<pace::Pace>()
+            app.init_resource::<pace::TickDue>()
                 .add_systems(FixedFirst, pace::wait_for_wall_clock);
         }
     }

@@ -10,7 +10,7 @@ use tabletop_bridge::{
 /// A real robot.
 #[derive(Resource)]
 pub struct RealRobot {
-    link: RobotLink,
+    link: RealLink,
     /// The pictures of its head camera.
     feed: Option<PictureFeed>,
     /// Why it is followed or driven no longer.
@@ -18,7 +18,7 @@ pub struct RealRobot {
 }
 
 /// The connection to a real robot.
-pub enum RobotLink {
+pub enum RealLink {
     /// It is only looked at.
     Shadow(Shadow),
     /// It is driven.
@@ -27,7 +27,7 @@ pub enum RobotLink {
 
 impl RealRobot {
     /// A robot, with its head camera if it has one.
-    pub const fn new(link: RobotLink, feed: Option<PictureFeed>) -> Self {
+    pub const fn new(link: RealLink, feed: Option<PictureFeed>) -> Self {
         Self {
             link,
             feed,
@@ -43,8 +43,8 @@ impl RealRobot {
     /// Its state as of its last messages.
     pub fn state(&self) -> RobotState {
         match &self.link {
-            RobotLink::Shadow(shadow) => shadow.state(),
-            RobotLink::Driven(bridge) => bridge.state(),
+            RealLink::Shadow(shadow) => shadow.state(),
+            RealLink::Driven(bridge) => bridge.state(),
         }
     }
 
@@ -56,15 +56,15 @@ impl RealRobot {
     /// Brings a driven robot to rest, lets it hold its position, and ends the connection.
     pub fn stop(self) -> Option<StopReason> {
         match self.link {
-            RobotLink::Shadow(_) => None,
-            RobotLink::Driven(bridge) => Some(bridge.stop()),
+            RealLink::Shadow(_) => None,
+            RealLink::Driven(bridge) => Some(bridge.stop()),
         }
     }
 
     pub(crate) fn bridge(&mut self) -> Option<&mut Bridge> {
         match &mut self.link {
-            RobotLink::Shadow(_) => None,
-            RobotLink::Driven(bridge) => Some(bridge),
+            RealLink::Shadow(_) => None,
+            RealLink::Driven(bridge) => Some(bridge),
         }
     }
 
@@ -76,8 +76,8 @@ impl RealRobot {
     /// Notes if the connection or the robot has ended it.
     pub(crate) fn look_after(&mut self) {
         let fault = match &self.link {
-            RobotLink::Shadow(shadow) => shadow.fault(),
-            RobotLink::Driven(bridge) => match bridge.watchdog() {
+            RealLink::Shadow(shadow) => shadow.fault(),
+            RealLink::Driven(bridge) => match bridge.watchdog() {
                 WatchdogState::Ramping(reason) | WatchdogState::Held(reason) => {
                     Some(reason.to_string())
                 }

@@ -11,10 +11,10 @@ use tabletop_bridge::{Bridge, BridgeOptions, BridgeProfile, Shadow, StopReason};
 use tabletop_core::{
     Drive, Robot, RobotCommand, RobotJoint, RobotLayout, StepApp as _, WriteCommand as _,
 };
-use tabletop_real::{RealRobot, RealRobotPlugin, RobotLink};
+use tabletop_real::{RealLink, RealRobot, RealRobotPlugin};
 use tabletop_sim::headless_app;
 
-fn app_beside(link: RobotLink) -> App {
+fn app_beside(link: RealLink) -> App {
     let mut app = headless_app();
     app.add_plugins(RealRobotPlugin { is_paced: true })
         .insert_resource(RealRobot::new(link, None));
@@ -38,7 +38,7 @@ fn the_simulated_robot_is_where_the_real_one_is_and_orders_move_neither() {
     let server = MockServer::start("baxter");
     let profile = BridgeProfile::shipped("baxter").unwrap();
     let shadow = Shadow::connect(&server.address(), &profile).unwrap();
-    let mut app = app_beside(RobotLink::Shadow(shadow));
+    let mut app = app_beside(RealLink::Shadow(shadow));
     for place in [0.3, -0.2] {
         server.robot().angles.insert("left_s0".into(), place);
         for _ in 0..30 {
@@ -61,7 +61,7 @@ fn an_order_to_the_simulated_robot_moves_the_real_one_and_is_seen_there() {
     };
     let mut bridge = Bridge::connect(&server.address(), &profile, &options).unwrap();
     bridge.arm().unwrap();
-    let mut app = app_beside(RobotLink::Driven(Box::new(bridge)));
+    let mut app = app_beside(RealLink::Driven(Box::new(bridge)));
     app.step(3);
     let start = angle(&app, RobotJoint::LeftS0);
     for _ in 0..60 {

@@ -66,7 +66,7 @@ pub fn described(picture: &Picture, camera: &Camera, table: &Table) -> Vec<Descr
     let lowest = |blob: &Blob| blob.pixels.last().copied();
     silhouettes.sort_by_key(|blob| std::cmp::Reverse(lowest(blob)));
     for silhouette in silhouettes.into_iter().take(MOST) {
-        let mut description = Description {
+        let mut description = ShapeSearch {
             residual: &mut residual,
             kept: solids_of(&found),
             inner: inner(&silhouette, picture.width as usize),
@@ -189,7 +189,7 @@ impl Model {
 }
 
 /// The search for a description of a silhouette.
-struct Description<'d, 'p> {
+struct ShapeSearch<'d, 'p> {
     residual: &'d mut Residual<'p>,
     kept: Vec<DrawnSolid>,
     silhouette: &'d Blob,
@@ -216,7 +216,7 @@ fn inner(blob: &Blob, width: usize) -> Vec<usize> {
     }
 }
 
-impl Description<'_, '_> {
+impl ShapeSearch<'_, '_> {
     /// The description that explains the silhouette best.
     fn best(&mut self) -> Option<DescribedObject> {
         let window = self.window();
