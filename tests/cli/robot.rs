@@ -146,3 +146,76 @@ fn a_description_reaches_no_urdf_outside_of_its_folder() {
         assert!(said.contains(words), "{urdf}: {said}");
     }
 }
+
+#[test]
+fn a_first_description_is_written_checked_and_driven() {
+    let folder = place("first_robot");
+    fs::create_dir_all(folder.join("urdf")).unwrap();
+    let urdf = folder.join("urdf/arm.urdf");
+    let panda = fs::read_to_string(shipped("assets/panda", "panda.urdf")).unwrap();
+    let panda = panda.replacen("effort=\"87\"", "", 1);
+    fs::write(&urdf, panda.replace("package://tabletop/", "missing/")).unwrap();
+    let (urdf, layout) = (urdf.to_str().unwrap(), folder.join("robot.ron"));
+    let layout = layout.to_str().unwrap();
+
+    let bare = tabletop(&["robot", "check", "--robot", urdf]);
+    assert_eq!(bare.status.code(), Some(2));
+    assert!(
+        stdout(&bare).contains("limb arm: 7 joints"),
+        "{}",
+        stdout(&bare)
+    );
+    assert!(
+        stderr(&bare).contains("tabletop robot new"),
+        "{}",
+        stderr(&bare)
+    );
+
+    let write = ["robot", "new", urdf, "--out", layout];
+    let written = tabletop(&write);
+    assert_eq!(written.status.code(), Some(0), "{}", stderr(&written));
+    let text = fs::read_to_string(layout).unwrap();
+    assert!(text.contains("urdf: \"urdf/arm.urdf\""), "{text}");
+    let again = tabletop(&write);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(
+        stderr(&again).contains("not overwritten"),
+        "{}",
+        stderr(&again)
+    );
+    assert_eq!(fs::read_to_string(layout).unwrap(), text);
+    let elsewhere = folder.join("urdf/deep");
+    fs::create_dir_all(&elsewhere).unwrap();
+    let elsewhere = elsewhere.join("robot.ron");
+    let elsewhere = tabletop(&["robot", "new", urdf, "--out", elsewhere.to_str().unwrap()]);
+    assert_eq!(elsewhere.status.code(), Some(2), "{}", stdout(&elsewhere));
+
+    let checked = tabletop(&["robot", "check", "--robot", layout]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+    let said = stdout(&checked);
+    let gap = said.lines().find(|line| line.contains("has no motor"));
+    let gap = gap.unwrap_or_else(|| panic!("{said}"));
+    assert!(
+        gap.contains("arm.urdf: line ") && gap.contains("panda_joint1"),
+        "{gap}"
+    );
+    assert!(said.ends_with("it can be driven\n"), "{said}");
+
+    let steps = "Robot(Show), Robot(Move([(panda_joint1, 0.3)])), Robot(WaitUntilStill(5)),";
+    let robot = robot_after("first_robot.ron", steps, &["--robot", layout]);
+    assert_eq!(robot["arm"]["angles"][0], 0.3);
+}
+
+#[test]
+fn the_robots_inside_the_program_lack_nothing() {
+    for robot in ["baxter", "panda", "so101"] {
+        let file = format!("assets/{robot}/robot.ron");
+        let checked = tabletop(&["robot", "check", "--robot", &file]);
+        assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+        assert!(
+            !stdout(&checked).contains(": line "),
+            "{}",
+            stdout(&checked)
+        );
+    }
+}

@@ -137,11 +137,11 @@ fn every_fault_is_reported_with_its_place() {
         ),
         (
             inertial("1", "1e13"),
-            "line 2: link a: no body has its inertia: it has a negative principal moment",
+            "line 2: link a: no body has its inertia: a principal moment is negative; correct its <inertia>, or remove its <inertial>",
         ),
         (
             inertial("1", "1\" ixy=\"2").replacen(" ixy=\"0\"", "", 1),
-            "line 2: link a: no body has its inertia: it has a negative principal moment",
+            "line 2: link a: no body has its inertia: a principal moment is negative; correct its <inertia>, or remove its <inertial>",
         ),
         (
             inertial("1e7", "1"),
