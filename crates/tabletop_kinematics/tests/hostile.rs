@@ -133,7 +133,7 @@ fn every_fault_is_reported_with_its_place() {
         ),
         (
             inertial("1", "NaN"),
-            "line 2: link a: its inertia is negative or not finite",
+            "line 2: link a: its inertia is negative or not finite; correct its <inertia>, or remove its <inertial>",
         ),
         (
             inertial("1", "1e13"),

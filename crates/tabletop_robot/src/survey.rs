@@ -73,8 +73,8 @@ impl Description {
         let gaps = articulation.motor_gaps().into_iter();
         shortcomings
             .extend(gaps.map(|gap| in_urdf(gap.line, format!("with --dynamic, {}", gap.remedy()))));
-        let mut seen = BTreeSet::new();
-        shortcomings.retain(|it| seen.insert(it.clone()));
+        shortcomings.sort();
+        shortcomings.dedup();
         Ok(Survey {
             text: surveyor.to_string(),
             shortcomings,

@@ -77,7 +77,7 @@ impl Numbers {
             return Err(self.fault("its mass is over 1,000,000 kg"));
         }
         let i = &inertial.inertia;
-        let fault = "its inertia is negative or not finite";
+        let fault = "its inertia is negative or not finite; correct its <inertia>, or remove its <inertial>";
         let moments = self.vector([i.ixx, i.iyy, i.izz], fault)?;
         let products = self.vector([i.ixy, i.ixz, i.iyz], fault)?;
         if moments.min_element() < 0.0 {

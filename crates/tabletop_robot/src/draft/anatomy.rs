@@ -18,6 +18,9 @@ const LONGEST_FINGER_SLIDE: f64 = 0.15;
 /// Longest way, in m, from the first joint of a finger without a telling name to its tip.
 const LONGEST_FINGER: f64 = 0.15;
 
+/// Moving joints in a row after which a robot branches into fingers, and no longer into arms.
+const HAND_DEPTH: usize = 5;
+
 /// Fewest joints of a limb that has no fingers.
 const FEWEST_JOINTS: usize = 3;
 
@@ -128,6 +131,15 @@ impl<'m> JointTree<'m> {
     }
 
     fn find_fingers(&mut self) {
+        let mut depths: Vec<usize> = Vec::new();
+        for node in 0..self.joints.len() {
+            let parent = self.parents[node];
+            depths.push(1 + parent.map_or(0, |parent| depths[parent]));
+            let branches =
+                |parent: usize| depths[parent] >= HAND_DEPTH && self.children(parent).len() > 1;
+            self.is_finger[node] =
+                parent.is_some_and(|parent| self.is_finger[parent] || branches(parent));
+        }
         let leaders = self.model.joints().iter();
         let leaders: BTreeSet<_> = leaders
             .filter_map(|joint| Some(joint.mimic?.leader))
@@ -155,7 +167,7 @@ impl<'m> JointTree<'m> {
             let follows = joint.mimic.is_some() || leaders.contains(&self.joints[node]);
             let link = &self.model.link(joint.child).name;
             let is_named = has_word(&joint.name, &FINGER_JOINTS) || has_word(link, &FINGER_LINKS);
-            self.is_finger[node] = is_end && (slides || follows || is_named);
+            self.is_finger[node] |= is_end && (slides || follows || is_named);
         }
     }
 

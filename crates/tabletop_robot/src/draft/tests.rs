@@ -291,6 +291,33 @@ fn a_lift_belongs_to_the_only_arm() {
 }
 
 #[test]
+fn what_branches_after_five_joints_is_a_hand() {
+    let digits = [("a", "0 -0.03 0.1"), ("b", "0 0.03 0.1")].map(|(digit, at)| {
+        let mut text = String::new();
+        let mut parent = "link5".to_owned();
+        for number in 0..4 {
+            let child = format!("{digit}{number}");
+            text += &link(&child, "0 0 0", "0.01 0.01 0.01");
+            let name = format!("digit_{digit}{number}");
+            text += &joint(
+                &name,
+                "revolute",
+                [&parent, &child],
+                if number == 0 { at } else { "0 0 0.03" },
+                "1 0 0",
+                &limit(0.0, 1.0),
+            );
+            parent = child;
+        }
+        text
+    });
+    let (text, layout, _) = drafted(&robot(&(arm("", "base", "0 0 0.1", 5) + &digits.concat())));
+    assert_eq!(joints_of(&layout, 0).len(), 5, "{text}");
+    let fingers = [vec!["a0".to_owned()], vec!["b0".to_owned()]];
+    assert_eq!(layout.limbs[0].gripper.fingers, fingers, "{text}");
+}
+
+#[test]
 fn what_has_no_limbs_or_faults_is_refused_with_a_sentence() {
     let refused = |urdf: &str| {
         let source = DescriptionSource {
