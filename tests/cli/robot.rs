@@ -140,7 +140,7 @@ fn a_description_reaches_no_urdf_outside_of_its_folder() {
         let named = format!("urdf: \"{urdf}\"");
         let text = panda("robot.ron").replace("urdf: \"panda.urdf\"", &named);
         fs::write(&layout, text).unwrap();
-        let output = tabletop(&["keys", "--robot", layout.to_str().unwrap()]);
+        let output = tabletop(&["robot", "check", "--robot", layout.to_str().unwrap()]);
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(code), "{urdf}: {said}");
         assert!(said.contains(words), "{urdf}: {said}");
@@ -161,7 +161,7 @@ fn a_first_description_is_written_checked_and_driven() {
     let bare = tabletop(&["robot", "check", "--robot", urdf]);
     assert_eq!(bare.status.code(), Some(2));
     assert!(
-        stdout(&bare).contains("limb arm: 7 joints"),
+        stdout(&bare).contains("limb panda: 7 joints"),
         "{}",
         stdout(&bare)
     );
@@ -203,7 +203,7 @@ fn a_first_description_is_written_checked_and_driven() {
 
     let steps = "Robot(Show), Robot(Move([(panda_joint1, 0.3)])), Robot(WaitUntilStill(5)),";
     let robot = robot_after("first_robot.ron", steps, &["--robot", layout]);
-    assert_eq!(robot["arm"]["angles"][0], 0.3);
+    assert_eq!(robot["panda"]["angles"][0], 0.3);
 }
 
 #[test]
@@ -218,4 +218,53 @@ fn the_robots_inside_the_program_lack_nothing() {
             stdout(&checked)
         );
     }
+}
+
+#[test]
+fn the_low_cost_arm_builds_a_tower() {
+    let setup = place("so101_blocks.xml");
+    let block = |id: &str, x: f32, y: f32| {
+        format!(
+            "<block id=\"{id}\" location=\"({x},{y},0.2)\" xspan=\"0.4\" yspan=\"0.4\" zspan=\"0.4\"/>"
+        )
+    };
+    let blocks = [
+        block("A", 0.0, -2.7),
+        block("B", 0.9, -3.0),
+        block("C", -0.9, -3.0),
+    ];
+    let table = "xmlns=\"http://synapse.cs.umd.edu/tabletop-xml\" xspan=\"20\" yspan=\"12\"";
+    fs::write(
+        &setup,
+        format!("<tabletop {table}>{}</tabletop>", blocks.concat()),
+    )
+    .unwrap();
+    let reach = |x: f32, y: f32, z: f32| {
+        format!("Robot(ReachTo(arm: So101, at: ({x}, {y}, {z}))), Robot(WaitUntilStill(10)),")
+    };
+    let put = |id: &str, x: f32, top: f32| {
+        [
+            reach(x, -3.0, 1.2),
+            reach(x, -3.0, 0.26),
+            "Robot(Close(So101)), Robot(WaitUntilStill(5)),".to_owned(),
+            format!("Expect(Robot(Holds(arm: So101, object: \"{id}\"))),"),
+            reach(x, -3.0, 1.6),
+            reach(0.0, -2.7, 1.6),
+            reach(0.0, -2.7, top),
+            "Robot(Open(So101)), Robot(WaitUntilStill(5)),".to_owned(),
+            reach(0.0, -2.7, 1.7),
+        ]
+        .concat()
+    };
+    let steps = format!(
+        "Load(file: \"so101_blocks.xml\"), Robot(Show), WaitUntilRest(3), {} {} WaitUntilRest(5),\
+         Expect(OnTopOf(object: \"B\", of: \"A\")), Expect(OnTopOf(object: \"C\", of: \"B\")),",
+        put("B", 0.9, 0.66),
+        put("C", -0.9, 1.06)
+    );
+    robot_after(
+        "so101_tower.ron",
+        &steps,
+        &["--robot", "assets/so101/robot.ron"],
+    );
 }

@@ -121,7 +121,7 @@ fn every_fault_is_reported_with_its_place() {
         ),
         (
             joint("revolute", "<mimic joint=\"x\"/>"),
-            "line 4: joint j: it cannot mimic x: there is no such joint",
+            "line 4: joint j: it cannot mimic x: there is no such joint; name one, or remove its <mimic>",
         ),
         (
             joint("revolute", "<mimic joint=\"j\"/>"),

@@ -18,8 +18,11 @@ const LONGEST_FINGER_SLIDE: f64 = 0.15;
 /// Longest way, in m, from the first joint of a finger without a telling name to its tip.
 const LONGEST_FINGER: f64 = 0.15;
 
-/// Moving joints in a row after which a robot branches into fingers, and no longer into arms.
+/// Moving joints in a row after which a robot branches into fingers, and no longer into arms, if the branches are short.
 const HAND_DEPTH: usize = 5;
+
+/// Longest way, in m, from the first joint of such a branch to its tip.
+const LONGEST_DIGIT: f64 = 0.25;
 
 /// Fewest joints of a limb that has no fingers.
 const FEWEST_JOINTS: usize = 3;
@@ -126,25 +129,35 @@ impl<'m> JointTree<'m> {
             joints,
             parents,
         };
-        tree.find_fingers();
+        let spans = tree.spans();
+        tree.find_digits(&spans);
+        tree.find_fingers(&spans);
         tree
     }
 
-    fn find_fingers(&mut self) {
+    /// Finds the joints below the place where a long arm branches.
+    fn find_digits(&mut self, spans: &[f64]) {
         let mut depths: Vec<usize> = Vec::new();
         for node in 0..self.joints.len() {
             let parent = self.parents[node];
             depths.push(1 + parent.map_or(0, |parent| depths[parent]));
-            let branches =
-                |parent: usize| depths[parent] >= HAND_DEPTH && self.children(parent).len() > 1;
+            let branches = |parent: usize| {
+                let children = self.children(parent);
+                let is_short =
+                    |&child: &usize| spans[self.joint(child).child.index()] < LONGEST_DIGIT;
+                depths[parent] >= HAND_DEPTH && children.len() > 1 && children.iter().all(is_short)
+            };
             self.is_finger[node] =
                 parent.is_some_and(|parent| self.is_finger[parent] || branches(parent));
         }
+    }
+
+    /// Finds the joints that carry fingers alone and move, or are named, as fingers do.
+    fn find_fingers(&mut self, spans: &[f64]) {
         let leaders = self.model.joints().iter();
         let leaders: BTreeSet<_> = leaders
             .filter_map(|joint| Some(joint.mimic?.leader))
             .collect();
-        let spans = self.spans();
         for node in (0..self.joints.len()).rev() {
             let children = self.children(node);
             let is_short = |&child: &usize| {
@@ -282,7 +295,8 @@ fn name(model: &RobotModel, limbs: &mut [Branch]) {
         }
     };
     let ways: [&dyn Fn(&Branch) -> Option<String>; 4] = [
-        &|limb| Some(part(limb).to_owned()),
+        // Of one limb it tells nothing more than the robot's name.
+        &|_| identifier(model.name()),
         &|limb| side(limb).map(str::to_owned),
         &|limb| Some(format!("{}_{}", side(limb)?, part(limb))),
         &|limb| common_start(&names_of(limb)),
@@ -304,6 +318,16 @@ fn name(model: &RobotModel, limbs: &mut [Branch]) {
     for (limb, name) in limbs.iter_mut().zip(names) {
         limb.name = name;
     }
+}
+
+/// A name as scenarios can write it.
+fn identifier(name: &str) -> Option<String> {
+    let name = name.to_ascii_lowercase();
+    let words = name.split(|letter: char| !letter.is_ascii_alphanumeric());
+    let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
+    let name = words.join("_");
+    name.starts_with(|first: char| first.is_ascii_alphabetic())
+        .then_some(name)
 }
 
 fn words_of(name: &str) -> impl Iterator<Item = &str> {

@@ -235,7 +235,12 @@ impl Seeker<'_> {
             slides.filter(|joint| joint.kind == JointType::Prismatic && joint.mimic.is_none());
         DraftHand {
             link: self.model.link(link).name.clone(),
-            at: place,
+            // Lengths of strangers' files may add up to what is no place.
+            at: if place.is_finite() {
+                place
+            } else {
+                DVec3::ZERO
+            },
             axes,
             opening: is_told.then_some(opening),
             finger: DVec3::new(
