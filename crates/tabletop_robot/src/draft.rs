@@ -1,8 +1,10 @@
 //! A first `robot.ron` for a URDF: what its tree says, and questions where it says nothing.
 
 mod anatomy;
+mod fingers;
 mod hand;
 mod home;
+mod pads;
 #[cfg(test)]
 mod tests;
 mod text;
