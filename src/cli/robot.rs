@@ -37,6 +37,9 @@ pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
         RobotTask::Fk => kinematics::answer(Question::Forward, robot),
         RobotTask::Ik => kinematics::answer(Question::Inverse, robot),
         RobotTask::Check => describe::check(robot),
+        RobotTask::New(_) if robot.is_some() => Err(Failure::input(
+            "`robot new` takes a URDF and makes a robot of it; --robot names one that is there",
+        )),
         RobotTask::New(new) => describe::write_first(new),
     }
 }

@@ -68,15 +68,16 @@ impl Description {
         if is_there && !source.reaches(folder) && names_files(&model) {
             return Err(DescriptionError::Outside(source.path));
         }
-        let layout = match &source.layout {
-            Some(text) => {
-                let file = LayoutFile::read(text)?;
-                hold_still(&mut model, &file)?;
+        let file = source.layout.as_deref().map(LayoutFile::read).transpose()?;
+        let layout = match &file {
+            Some(file) => {
+                hold_still(&mut model, file)?;
                 file.layout(|name| urdf_joint(&model, name))?
             }
             None => RobotLayout::default(),
         };
-        Articulation::new(model.clone(), layout.clone())?;
+        Articulation::new(model.clone(), layout.clone())
+            .map_err(|error| located(error, file.as_ref()))?;
         Ok(Self {
             model,
             layout,
@@ -97,6 +98,23 @@ impl Description {
             source: None,
             figures: SharedFigures::default(),
         })
+    }
+}
+
+/// The fault that the URDF lacks a name of a file, with the line of the name.
+fn located(error: ModelError, file: Option<&LayoutFile>) -> DescriptionError {
+    let name = if let ModelError::NoSuchLink { link: name, .. }
+    | ModelError::NoSuchJoint { joint: name, .. }
+    | ModelError::NoArm { tip: name, .. } = &error
+    {
+        Some(name)
+    } else {
+        None
+    };
+    let line = file.zip(name).and_then(|(file, name)| file.line_of(name));
+    match line {
+        Some(line) => LayoutError::Fault(format!("line {line}: {error}")).into(),
+        None => error.into(),
     }
 }
 
@@ -240,6 +258,17 @@ mod tests {
             error,
             "robot.ron: line 5: still: panda_joint1 is a joint of a limb"
         );
+    }
+
+    #[test]
+    fn names_that_the_urdf_lacks_have_a_line() {
+        let layout = LAYOUT.replace("link: \"panda_flange\"", "link: \"flange\"");
+        let error = read(PANDA, &layout).unwrap_err().to_string();
+        assert_eq!(error, "robot.ron: line 34: robot panda has no link flange");
+        let layout = LAYOUT.replace("link: \"panda_flange\"", "link: \"panda_link5\"");
+        let error = read(PANDA, &layout).unwrap_err().to_string();
+        let said = "robot.ron: line 34: no arm leads from link panda_link0 to link panda_link5: ";
+        assert!(error.starts_with(said), "{error}");
     }
 
     #[test]

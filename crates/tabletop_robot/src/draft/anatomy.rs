@@ -77,6 +77,8 @@ impl Anatomy {
         });
         let mut limbs: Vec<_> = branches.collect();
         name(model, &mut limbs);
+        // As the rows of scripts have them.
+        limbs.sort_by_key(|limb| limb.name.starts_with("right"));
         let neck = heads.iter().flatten().find(|&&node| tree.turns_aside(node));
         let neck = neck.map(|&node| tree.joints[node]);
         let shared: Vec<_> = shared.into_iter().map(|node| tree.joints[node]).collect();

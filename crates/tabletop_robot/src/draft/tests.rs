@@ -239,7 +239,7 @@ fn two_arms_on_a_torso_with_a_head() {
             "",
         ),
     ];
-    let arms = ["left", "right"].map(|side| {
+    let arms = ["right", "left"].map(|side| {
         let at = match side {
             "left" => "0.1 0.3 0.5",
             _ => "0.1 -0.3 0.5",
