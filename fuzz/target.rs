@@ -7,15 +7,15 @@ use std::{
 
 use bevy::math::DVec3;
 use tabletop::{
-    core::{LayoutFile, UrdfJoint},
+    core::{LayoutFile, Reach, UrdfJoint},
     dataset::import_recording,
     headless_app_with,
     kinematics::RobotModel,
-    mesh::{read_obj, read_stl},
+    mesh::{read_collada, read_obj, read_stl},
     prelude::*,
     recorder::{RecordingReader, Session},
     replay::Replay,
-    robot::look::read_shape,
+    robot::{Description, DescriptionSource, draft, look::read_shape},
     scenario::Scenario,
     script::engine::protocol::Arrays,
     shown_task::shown_task,
@@ -61,7 +61,7 @@ const fn target(
 }
 
 impl Target {
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         target("task", || each(task), &["tablesetup"], ".xml", "task.txt"),
         target(
             "scenario",
@@ -98,6 +98,7 @@ impl Target {
         ),
         target("stl", || each(stl), &[], ".stl", "mesh.txt"),
         target("obj", || each(obj), &[], ".obj", "mesh.txt"),
+        target("collada", || each(collada), &[], ".dae", "collada.txt"),
         target(
             "shape",
             || each(shape),
@@ -249,12 +250,28 @@ fn start_requirements() -> Box<dyn FnMut(&[u8])> {
 
 /// A description, whose robot then has its weights asked for.
 fn urdf(bytes: &[u8]) {
-    let Ok(robot) = RobotModel::from_urdf(&String::from_utf8_lossy(bytes)) else {
+    let text = String::from_utf8_lossy(bytes);
+    let Ok(robot) = RobotModel::from_urdf(&text) else {
         return;
     };
     let frames = robot.frames(&robot.zero());
     let _torques = robot.gravity_torques(&frames, DVec3::NEG_Z * 9.81, &[]);
     let _inertia = robot.inertia_matrix(&frames, &[]);
+    let source = DescriptionSource {
+        path: "robot.urdf".into(),
+        urdf: text.into_owned(),
+        layout: None,
+        reach: Some(Reach::of(None::<&Path>)),
+    };
+    if let Ok(layout) = draft(&source, "robot.urdf") {
+        let layout = Some(layout);
+        let robot = Description::read(DescriptionSource { layout, ..source });
+        let survey = robot.map(|robot| robot.survey());
+        assert!(
+            matches!(survey, Ok(Ok(_))),
+            "what is written loads: {survey:?}"
+        );
+    }
 }
 
 fn layout(bytes: &[u8]) {
@@ -275,6 +292,10 @@ fn stl(bytes: &[u8]) {
 
 fn obj(bytes: &[u8]) {
     let _triangles = read_obj(bytes, 1_000_000);
+}
+
+fn collada(bytes: &[u8]) {
+    let _triangles = read_collada(bytes, 1_000_000);
 }
 
 fn shape(bytes: &[u8]) {

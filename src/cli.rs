@@ -2,7 +2,6 @@
 
 mod allowed_paths;
 mod arguments;
-mod calibrate;
 mod check;
 mod completions;
 mod cut_off;
@@ -16,6 +15,7 @@ mod export;
 mod failure;
 mod film_camera;
 mod hand_cameras;
+mod head_camera;
 mod imitate;
 mod import;
 mod init;

@@ -25,9 +25,9 @@ use tabletop_geometry::{Pose, Rgb};
 use super::{
     Failure,
     allowed_paths::AllowedPaths,
-    calibrate::taking,
     cut_off::say_if_cut_off,
     explain::{furniture, print, reported},
+    head_camera::taking,
     range::NumberRange,
     terminal::{say, show_warnings},
 };

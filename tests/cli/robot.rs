@@ -140,9 +140,131 @@ fn a_description_reaches_no_urdf_outside_of_its_folder() {
         let named = format!("urdf: \"{urdf}\"");
         let text = panda("robot.ron").replace("urdf: \"panda.urdf\"", &named);
         fs::write(&layout, text).unwrap();
-        let output = tabletop(&["keys", "--robot", layout.to_str().unwrap()]);
+        let output = tabletop(&["robot", "check", "--robot", layout.to_str().unwrap()]);
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(code), "{urdf}: {said}");
         assert!(said.contains(words), "{urdf}: {said}");
     }
+}
+
+#[test]
+fn a_first_description_is_written_checked_and_driven() {
+    let folder = place("first_robot");
+    fs::create_dir_all(folder.join("urdf")).unwrap();
+    let urdf = folder.join("urdf/arm.urdf");
+    let panda = fs::read_to_string(shipped("assets/panda", "panda.urdf")).unwrap();
+    let panda = panda.replacen("effort=\"87\"", "", 1);
+    fs::write(&urdf, panda.replace("package://tabletop/", "missing/")).unwrap();
+    let (urdf, layout) = (urdf.to_str().unwrap(), folder.join("robot.ron"));
+    let layout = layout.to_str().unwrap();
+
+    let bare = tabletop(&["robot", "check", "--robot", urdf]);
+    assert_eq!(bare.status.code(), Some(2));
+    assert!(
+        stdout(&bare).contains("limb panda: 7 joints"),
+        "{}",
+        stdout(&bare)
+    );
+    assert!(
+        stderr(&bare).contains("tabletop robot new"),
+        "{}",
+        stderr(&bare)
+    );
+
+    let write = ["robot", "new", urdf, "--out", layout];
+    let written = tabletop(&write);
+    assert_eq!(written.status.code(), Some(0), "{}", stderr(&written));
+    let text = fs::read_to_string(layout).unwrap();
+    assert!(text.contains("urdf: \"urdf/arm.urdf\""), "{text}");
+    let again = tabletop(&write);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(
+        stderr(&again).contains("not overwritten"),
+        "{}",
+        stderr(&again)
+    );
+    assert_eq!(fs::read_to_string(layout).unwrap(), text);
+    let elsewhere = folder.join("urdf/deep");
+    fs::create_dir_all(&elsewhere).unwrap();
+    let elsewhere = elsewhere.join("robot.ron");
+    let elsewhere = tabletop(&["robot", "new", urdf, "--out", elsewhere.to_str().unwrap()]);
+    assert_eq!(elsewhere.status.code(), Some(2), "{}", stdout(&elsewhere));
+
+    let checked = tabletop(&["robot", "check", "--robot", layout]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+    let said = stdout(&checked);
+    let gap = said.lines().find(|line| line.contains("has no motor"));
+    let gap = gap.unwrap_or_else(|| panic!("{said}"));
+    assert!(
+        gap.contains("arm.urdf: line ") && gap.contains("panda_joint1"),
+        "{gap}"
+    );
+    assert!(said.ends_with("it can be driven\n"), "{said}");
+
+    let steps = "Robot(Show), Robot(Move([(panda_joint1, 0.3)])), Robot(WaitUntilStill(5)),";
+    let robot = robot_after("first_robot.ron", steps, &["--robot", layout]);
+    assert_eq!(robot["panda"]["angles"][0], 0.3);
+}
+
+#[test]
+fn the_robots_inside_the_program_lack_nothing() {
+    for robot in ["baxter", "panda", "so101"] {
+        let file = format!("assets/{robot}/robot.ron");
+        let checked = tabletop(&["robot", "check", "--robot", &file]);
+        assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+        assert!(
+            !stdout(&checked).contains(": line "),
+            "{}",
+            stdout(&checked)
+        );
+    }
+}
+
+#[test]
+fn the_low_cost_arm_builds_a_tower() {
+    let setup = place("so101_blocks.xml");
+    let block = |id: &str, x: f32, y: f32| {
+        format!(
+            "<block id=\"{id}\" location=\"({x},{y},0.2)\" xspan=\"0.4\" yspan=\"0.4\" zspan=\"0.4\"/>"
+        )
+    };
+    let blocks = [
+        block("A", 0.0, -2.7),
+        block("B", 0.9, -3.0),
+        block("C", -0.9, -3.0),
+    ];
+    let table = "xmlns=\"http://synapse.cs.umd.edu/tabletop-xml\" xspan=\"20\" yspan=\"12\"";
+    fs::write(
+        &setup,
+        format!("<tabletop {table}>{}</tabletop>", blocks.concat()),
+    )
+    .unwrap();
+    let reach = |x: f32, y: f32, z: f32| {
+        format!("Robot(ReachTo(arm: So101, at: ({x}, {y}, {z}))), Robot(WaitUntilStill(10)),")
+    };
+    let put = |id: &str, x: f32, top: f32| {
+        [
+            reach(x, -3.0, 1.2),
+            reach(x, -3.0, 0.26),
+            "Robot(Close(So101)), Robot(WaitUntilStill(5)),".to_owned(),
+            format!("Expect(Robot(Holds(arm: So101, object: \"{id}\"))),"),
+            reach(x, -3.0, 1.6),
+            reach(0.0, -2.7, 1.6),
+            reach(0.0, -2.7, top),
+            "Robot(Open(So101)), Robot(WaitUntilStill(5)),".to_owned(),
+            reach(0.0, -2.7, 1.7),
+        ]
+        .concat()
+    };
+    let steps = format!(
+        "Load(file: \"so101_blocks.xml\"), Robot(Show), WaitUntilRest(3), {} {} WaitUntilRest(5),\
+         Expect(OnTopOf(object: \"B\", of: \"A\")), Expect(OnTopOf(object: \"C\", of: \"B\")),",
+        put("B", 0.9, 0.66),
+        put("C", -0.9, 1.06)
+    );
+    robot_after(
+        "so101_tower.ron",
+        &steps,
+        &["--robot", "assets/so101/robot.ron"],
+    );
 }

@@ -154,6 +154,30 @@ impl RobotModel {
             .map(|(i, _)| ModelJointId(i))
     }
 
+    /// A link and all that hangs on it, directly or not.
+    pub fn all_on(&self, link: LinkId) -> Vec<LinkId> {
+        self.reached_from(link, |_| true)
+    }
+
+    /// A link and all that is rigidly connected to it and hangs on it.
+    pub fn rigidly_on(&self, link: LinkId) -> Vec<LinkId> {
+        self.reached_from(link, |joint| joint.kind == JointType::Fixed)
+    }
+
+    fn reached_from(&self, link: LinkId, by: impl Fn(&ModelJoint) -> bool) -> Vec<LinkId> {
+        let mut is_reached = vec![false; self.links.len()];
+        is_reached[link.index()] = true;
+        let mut reached = vec![link];
+        // Parents stand before their children.
+        for joint in &self.joints[link.index()..] {
+            if is_reached[joint.parent.index()] && by(joint) {
+                is_reached[joint.child.index()] = true;
+                reached.push(joint.child);
+            }
+        }
+        reached
+    }
+
     /// The link that a link hangs on; `None` for the root.
     pub fn parent(&self, link: LinkId) -> Option<LinkId> {
         self.link(link).joint.map(|joint| self.joint(joint).parent)
@@ -169,6 +193,33 @@ impl RobotModel {
         match self.joint(joint).mimic {
             Some(mimic) => mimic.multiplier * configuration[mimic.leader] + mimic.offset,
             None => configuration[joint],
+        }
+    }
+
+    /// Lets a joint stand still at a position, in rad or m, as if it were fixed there; joints that follow it stand where it has them.
+    ///
+    /// ```
+    /// let mut robot = tabletop_kinematics::baxter()?;
+    /// let neck = robot.find_joint("head_pan")?;
+    /// let moving = robot.movable().count();
+    /// robot.hold(neck, 0.5);
+    /// assert_eq!(robot.movable().count(), moving - 1);
+    /// # Ok::<(), tabletop_kinematics::ModelError>(())
+    /// ```
+    pub fn hold(&mut self, held: ModelJointId, position: f64) {
+        for (i, joint) in self.joints.iter_mut().enumerate() {
+            let at = match joint.mimic {
+                _ if i == held.index() => position,
+                Some(mimic) if mimic.leader == held => mimic.multiplier * position + mimic.offset,
+                Some(_) | None => continue,
+            };
+            *joint = ModelJoint {
+                origin: joint.motion(at),
+                kind: JointType::Fixed,
+                limits: [0.0; 2],
+                mimic: None,
+                ..joint.clone()
+            };
         }
     }
 

@@ -23,8 +23,11 @@ pub(crate) struct ReadFault {
     pub what: String,
 }
 
-/// Rewrites a text without comments, processing instructions, namespaces, and parts in other languages: elements and attributes
-/// with a prefix.
+/// The elements of URDF that are not used, and whose faults need not concern anybody.
+const UNUSED: [&str; 1] = ["texture"];
+
+/// Rewrites a text without comments, processing instructions, namespaces, unused elements, and parts in other languages: elements and
+/// attributes with a prefix.
 pub(crate) fn plain(text: &str) -> Result<String, ReadFault> {
     if text.len() > MOST_BYTES {
         let what = format!("it has more than {MOST_BYTES} bytes");
@@ -53,7 +56,7 @@ struct Plain {
     text: String,
     /// The names of the elements that have not ended.
     open: Vec<String>,
-    /// Number of enclosing elements, including this one, that belong to another language or to such an element.
+    /// Number of enclosing elements, including this one, that belong to another language, are unused, or are in such an element.
     foreign: usize,
 }
 
@@ -73,7 +76,7 @@ impl Plain {
 
     fn begin(&mut self, tag: &BytesStart) -> Result<(), String> {
         let name = name_of(tag.name().0)?.to_owned();
-        let is_foreign = name.contains(':');
+        let is_foreign = name.contains(':') || UNUSED.contains(&&*name);
         if self.open.len() >= DEEPEST {
             return Err(format!("elements are nested more than {DEEPEST} deep"));
         }
@@ -163,7 +166,7 @@ mod tests {
     #[test]
     fn comments_declarations_and_foreign_elements_are_removed() {
         let text = "<?xml version='1.0'?><!-- a --><robot xmlns='x' xmlns:g='y' name='&lt;a&#x41;'>\
-            <g:plugin><link name='no'/></g:plugin>\n<link g:a='b' name='l'/><t>a &amp; <![CDATA[<b>]]></t></robot>";
+            <g:plugin><link name='no'/></g:plugin><texture/>\n<link g:a='b' name='l'/><t>a &amp; <![CDATA[<b>]]></t></robot>";
         assert_eq!(
             written(text),
             "<robot name=\"&lt;aA\">\n<link name=\"l\"></link><t>a &amp; &lt;b&gt;</t></robot>"

@@ -73,13 +73,25 @@ fn locate(error: Unread, text: &str, outline: &Outline) -> ModelError {
     };
     let message = match error {
         Unread::Xml(fault) => fault.what,
-        // With a prefix of the reader's own.
-        Unread::Urdf(error) => error.to_string().trim_start_matches("custom: ").to_owned(),
+        Unread::Urdf(error) => remedied(&error.to_string()),
     };
     ModelError::Syntax {
         line,
         element,
         message,
+    }
+}
+
+/// A message of the reader without its prefix, and with what to do if it names something that is missing.
+fn remedied(message: &str) -> String {
+    let message = message.trim_start_matches("custom: ");
+    let missing = message.strip_prefix("missing field `");
+    match missing.and_then(|rest| rest.strip_suffix('`')) {
+        Some(field) => {
+            let field = field.trim_start_matches('@');
+            format!("`{field}` is missing: write it, or remove what needs it")
+        }
+        None => message.to_owned(),
     }
 }
 

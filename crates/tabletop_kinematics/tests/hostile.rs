@@ -121,7 +121,7 @@ fn every_fault_is_reported_with_its_place() {
         ),
         (
             joint("revolute", "<mimic joint=\"x\"/>"),
-            "line 4: joint j: it cannot mimic x: there is no such joint",
+            "line 4: joint j: it cannot mimic x: there is no such joint; name one, or remove its <mimic>",
         ),
         (
             joint("revolute", "<mimic joint=\"j\"/>"),
@@ -133,15 +133,15 @@ fn every_fault_is_reported_with_its_place() {
         ),
         (
             inertial("1", "NaN"),
-            "line 2: link a: its inertia is negative or not finite",
+            "line 2: link a: its inertia is negative or not finite; correct its <inertia>, or remove its <inertial>",
         ),
         (
             inertial("1", "1e13"),
-            "line 2: link a: no body has its inertia: it has a negative principal moment",
+            "line 2: link a: no body has its inertia: a principal moment is negative; correct its <inertia>, or remove its <inertial>",
         ),
         (
             inertial("1", "1\" ixy=\"2").replacen(" ixy=\"0\"", "", 1),
-            "line 2: link a: no body has its inertia: it has a negative principal moment",
+            "line 2: link a: no body has its inertia: a principal moment is negative; correct its <inertia>, or remove its <inertial>",
         ),
         (
             inertial("1e7", "1"),

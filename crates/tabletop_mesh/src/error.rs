@@ -16,6 +16,9 @@ pub enum MeshFileError {
     /// It is not written as OBJ.
     #[error("it is no OBJ file: {0}")]
     Obj(String),
+    /// It is not written as COLLADA.
+    #[error("it is no COLLADA file: {0}")]
+    Collada(String),
     /// It has more triangles than this limit.
     #[error("it has more than {0} triangles")]
     TooManyTriangles(usize),

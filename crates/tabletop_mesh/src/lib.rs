@@ -1,6 +1,6 @@
-//! Meshes: triangles and surfaces from STL and OBJ files, and the convex solids that fill them.
+//! Meshes: triangles and surfaces from STL, OBJ and COLLADA files, and the convex solids that fill them.
 //!
-//! [`read_stl`] and [`read_obj`] read triangles; [`surface()`] makes a surface of those of an STL file, [`convex_solids`] decomposes one, once
+//! [`read_stl`], [`read_obj`] and [`read_collada`] read triangles; [`surface()`] makes a surface of those of an STL file, [`convex_solids`] decomposes one, once
 //! for each content, and [`mesh`] does both.
 //!
 //! ```
@@ -10,6 +10,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod collada;
 mod convex;
 mod error;
 mod limits;
@@ -18,6 +19,7 @@ mod stl;
 mod surface;
 mod text;
 
+pub use collada::{ColoredTriangles, read_collada};
 pub use convex::convex_solids;
 pub use error::MeshFileError;
 pub use limits::MAX_STL_BYTES;

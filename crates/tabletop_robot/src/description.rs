@@ -58,7 +58,7 @@ impl Description {
     ///
     /// The texts cannot be used, or the URDF lacks joints or links that the `robot.ron` names; the error names them.
     pub fn read(source: DescriptionSource) -> Result<Self, DescriptionError> {
-        let model =
+        let mut model =
             RobotModel::from_urdf(&source.urdf).map_err(|error| DescriptionError::Urdf {
                 path: source.path.clone(),
                 error: Box::new(error),
@@ -68,11 +68,16 @@ impl Description {
         if is_there && !source.reaches(folder) && names_files(&model) {
             return Err(DescriptionError::Outside(source.path));
         }
-        let layout = match &source.layout {
-            Some(text) => LayoutFile::read(text)?.layout(|name| urdf_joint(&model, name))?,
+        let file = source.layout.as_deref().map(LayoutFile::read).transpose()?;
+        let layout = match &file {
+            Some(file) => {
+                hold_still(&mut model, file)?;
+                file.layout(|name| urdf_joint(&model, name))?
+            }
             None => RobotLayout::default(),
         };
-        Articulation::new(model.clone(), layout.clone())?;
+        Articulation::new(model.clone(), layout.clone())
+            .map_err(|error| located(error, file.as_ref()))?;
         Ok(Self {
             model,
             layout,
@@ -94,6 +99,39 @@ impl Description {
             figures: SharedFigures::default(),
         })
     }
+}
+
+/// The fault that the URDF lacks a name of a file, with the line of the name.
+fn located(error: ModelError, file: Option<&LayoutFile>) -> DescriptionError {
+    let name = if let ModelError::NoSuchLink { link: name, .. }
+    | ModelError::NoSuchJoint { joint: name, .. }
+    | ModelError::NoArm { tip: name, .. } = &error
+    {
+        Some(name)
+    } else {
+        None
+    };
+    let line = file.zip(name).and_then(|(file, name)| file.line_of(name));
+    match line {
+        Some(line) => LayoutError::Fault(format!("line {line}: {error}")).into(),
+        None => error.into(),
+    }
+}
+
+/// Fixes the joints that stand still.
+fn hold_still(model: &mut RobotModel, file: &LayoutFile) -> Result<(), LayoutError> {
+    for (name, position) in &file.still {
+        let line = file.line_of(name).unwrap_or(1);
+        let fault = |what: &str| LayoutError::Fault(format!("line {line}: still: {what} {name}"));
+        let joint = urdf_joint(model, name);
+        let joint = joint.and_then(|joint| model.find_joint(&joint.name).ok());
+        let joint = joint.ok_or_else(|| fault("the URDF has no joint"))?;
+        if !position.is_finite() {
+            return Err(fault("a position that is not finite for the joint"));
+        }
+        model.hold(joint, *position);
+    }
+    Ok(())
 }
 
 /// The joint of this name or, if there is none, the one that has it in snake case.
@@ -187,6 +225,115 @@ mod tests {
             panic!("no axes")
         };
         assert_eq!(first.motion_of(DVec3::new(1.0, 2.0, 3.0)), DVec3::Z);
+    }
+
+    #[test]
+    fn joints_that_stand_still_are_no_limbs() {
+        let still = |name: &str| {
+            let layout = LAYOUT.replace(
+                "(name: \"panda_joint3\", label: \"J3\", home: 0, key: \"KeyO\"),",
+                "",
+            );
+            let layout = layout.replace("urdf:", &format!("still: [(\"{name}\", 0.5)],\n urdf:"));
+            // Every posture has one number fewer.
+            let layout = layout
+                .replace("-0.6, 0, ", "-0.6, ")
+                .replace("482, 0, ", "482, ");
+            read(
+                PANDA,
+                &layout.replace("[0, 0, 0, -0.0698", "[0, 0, -0.0698"),
+            )
+        };
+        let robot = still("panda_joint3").unwrap();
+        assert_eq!(robot.layout.limbs[0].joints.len(), 6);
+        let joint = robot.model.find_joint("panda_joint3").unwrap();
+        assert_eq!(robot.model.joint(joint).kind, JointType::Fixed);
+        let error = still("panda_joint9").unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "robot.ron: line 5: still: the URDF has no joint panda_joint9"
+        );
+        let error = still("panda_joint1").unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "robot.ron: line 5: still: panda_joint1 is a joint of a limb"
+        );
+    }
+
+    #[test]
+    fn names_that_the_urdf_lacks_have_a_line() {
+        let layout = LAYOUT.replace("link: \"panda_flange\"", "link: \"flange\"");
+        let error = read(PANDA, &layout).unwrap_err().to_string();
+        assert_eq!(error, "robot.ron: line 34: robot panda has no link flange");
+        let layout = LAYOUT.replace("link: \"panda_flange\"", "link: \"panda_link5\"");
+        let error = read(PANDA, &layout).unwrap_err().to_string();
+        let said = "robot.ron: line 34: no arm leads from link panda_link0 to link panda_link5: ";
+        assert!(error.starts_with(said), "{error}");
+    }
+
+    #[test]
+    fn fingers_of_the_urdf_are_no_bodies_of_their_own() {
+        let fingers = |names: &str| {
+            let layout = LAYOUT.replace(
+                "kind: Parallel,",
+                &format!("kind: Parallel, fingers: {names},"),
+            );
+            let robot = read(PANDA, &layout).unwrap();
+            Articulation::new(robot.model, robot.layout).unwrap()
+        };
+        let [all, fewer] = ["([], [])", "([], [\"panda_link7\"])"].map(fingers);
+        assert_eq!(all.bodies.len(), fewer.bodies.len() + 1);
+        assert!(fewer.bodies.iter().all(|body| body.id != "panda_link7"));
+        assert_eq!(fewer.finger_links(LimbId(0), -1), []);
+        let links = fewer.finger_links(LimbId(0), 1);
+        let [(link, frame), ..] = links[..] else {
+            panic!("no links")
+        };
+        assert_eq!(fewer.model().link(link).name, "panda_link7");
+        // It is half a finger beside the middle of the closed hand.
+        let middle = frame.inverse().translation;
+        assert!(
+            (middle - DVec3::new(0.0053, 0.0053, 0.0))
+                .truncate()
+                .length()
+                < 1e-3,
+            "{middle}"
+        );
+    }
+
+    #[test]
+    fn a_collision_shape_of_collada_is_a_convex_hull() {
+        let folder = std::env::temp_dir().join(format!("tabletop-hull-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let pyramid = "<COLLADA><library_geometries><geometry id='g'><mesh>\
+            <source id='s'><float_array>0 0 0 1 0 0 0 1 0 0 0 1</float_array>\
+            <technique_common><accessor stride='3'/></technique_common></source>\
+            <vertices id='v'><input semantic='POSITION' source='#s'/></vertices><triangles>\
+            <input semantic='VERTEX' source='#v'/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh></geometry></library_geometries>\
+            <library_visual_scenes><visual_scene><node><instance_geometry url='#g'/></node></visual_scene></library_visual_scenes>\
+            </COLLADA>";
+        std::fs::write(folder.join("hull.dae"), pyramid).unwrap();
+        let collision = "<collision><geometry><mesh filename=\"hull.dae\" scale=\"0.1 0.1 0.1\"/></geometry></collision></link>";
+        let urdf = PANDA.replacen("</link>", collision, 1);
+        let robot = Description::read(DescriptionSource {
+            path: folder.join("panda.urdf"),
+            urdf,
+            layout: Some(LAYOUT.to_owned()),
+            reach: None,
+        })
+        .unwrap();
+        let mut articulation = Articulation::new(robot.model, robot.layout).unwrap();
+        let before = articulation.bodies[0].parts.len();
+        let lacking = articulation.add_meshes(robot.source.as_ref());
+        assert!(lacking.is_empty(), "{lacking:?}");
+        let [_, .., hull] = &articulation.bodies[0].parts[..] else {
+            panic!("no parts")
+        };
+        assert_eq!(articulation.bodies[0].parts.len(), before + 1);
+        let far = hull.shape.as_convex_polyhedron().unwrap().points();
+        let far = far.iter().map(|point| point.x).fold(0.0, f32::max);
+        assert!((far - 1.0).abs() < 1e-4, "0.1 m in units: {far}");
+        std::fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]

@@ -8,12 +8,14 @@
 
 mod articulation;
 mod description;
+mod draft;
 mod hand_cameras;
 pub mod look;
 mod motor_gap;
 mod plugin;
 mod reach;
 mod source;
+mod survey;
 
 pub use articulation::{
     link_entities::{
@@ -26,11 +28,13 @@ pub use articulation::{
     },
 };
 pub use description::{Description, DescriptionError};
+pub use draft::{DraftError, draft};
 pub use hand_cameras::HandCameraCarrier;
 pub use motor_gap::{MotorGap, MotorGapKind};
 pub use plugin::RobotPlugin;
 pub use reach::{end_effector_at, reach, reach_nearby};
 pub use source::DescriptionSource;
+pub use survey::{Shortcoming, Survey};
 
 /// The names that most users of this crate need.
 pub mod prelude {

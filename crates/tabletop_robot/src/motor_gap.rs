@@ -34,23 +34,25 @@ pub enum MotorGapKind {
 
 impl fmt::Display for MotorGap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { line, name, kind } = self;
-        write!(f, "line {line} of the URDF: ")?;
-        match kind {
-            MotorGapKind::Effort => write!(
-                f,
+        write!(f, "line {} of the URDF: {}", self.line, self.remedy())
+    }
+}
+
+impl MotorGap {
+    /// What is missing and what to write.
+    pub(crate) fn remedy(&self) -> String {
+        let name = &self.name;
+        match self.kind {
+            MotorGapKind::Effort => format!(
                 "joint {name} has no motor: give its <limit> an effort (N m; N if it slides), or its entry in robot.ron one"
             ),
-            MotorGapKind::Speed => write!(
-                f,
+            MotorGapKind::Speed => format!(
                 "joint {name} cannot move: give its <limit> a velocity (rad/s; m/s if it slides), or its entry in robot.ron a speed"
             ),
-            MotorGapKind::Mass => write!(
-                f,
+            MotorGapKind::Mass => format!(
                 "link {name} weighs nothing: give it an <inertial> with mass (kg) and inertia (kg m²)"
             ),
-            MotorGapKind::Inertia => write!(
-                f,
+            MotorGapKind::Inertia => format!(
                 "link {name} has a mass and no moments of inertia: give its <inertial> an inertia (kg m²)"
             ),
         }

@@ -35,7 +35,8 @@ impl fmt::Display for RobotFileError {
         write!(f, "{}: ", self.path.display())?;
         match &self.fault {
             RobotFault::Unreadable(error) => error.fmt(f),
-            RobotFault::Layout(error) => error.fmt(f),
+            RobotFault::Layout(error)
+            | RobotFault::Description(DescriptionError::Layout(error)) => error.fmt(f),
             RobotFault::Description(error) => error.fmt(f),
             RobotFault::Outside(urdf) => write!(
                 f,

@@ -65,11 +65,13 @@ macro_rules! asset {
 }
 
 /// The descriptions of robots; the program knows the files that they name.
-const ROBOTS: [ShippedFile; 5] = [
+const ROBOTS: [ShippedFile; 7] = [
     asset!("baxter/baxter.urdf"),
     asset!("baxter/robot.ron"),
     asset!("panda/panda.urdf"),
     asset!("panda/robot.ron"),
+    asset!("so101/so101.urdf"),
+    asset!("so101/robot.ron"),
     asset!("baxter/baxter_smile.urdf"),
 ];
 

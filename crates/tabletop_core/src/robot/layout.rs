@@ -168,6 +168,9 @@ pub struct GripperLayout {
     pub look: Option<FingerLook>,
     /// The joints of the fingers in the URDF; each moves by half of the opening. Only frames follow them.
     pub finger_joints: Vec<String>,
+    /// The links of the URDF that its left and its right finger are, with all that hangs on them; they are no bodies of their own. Without
+    /// any, a finger looks as `look` says.
+    pub fingers: [Vec<String>; 2],
 }
 
 impl GripperLayout {

@@ -39,6 +39,12 @@ pub struct LayoutFile {
     known_postures: Vec<Vec<f64>>,
     #[serde(default)]
     may_touch: Vec<(String, String)>,
+    /// Joints of the URDF that stand still, each at its position in rad or m.
+    #[serde(default)]
+    pub still: Vec<(String, f64)>,
+    /// The text that it was read from.
+    #[serde(skip)]
+    text: String,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -84,6 +90,8 @@ struct GripperEntry {
     look: Option<FingerLook>,
     #[serde(default)]
     finger_joints: Vec<String>,
+    #[serde(default)]
+    fingers: [Vec<String>; 2],
     #[serde(default)]
     open_key: Option<String>,
     #[serde(default)]
@@ -131,7 +139,23 @@ impl LayoutFile {
     /// The first syntax error, with its place.
     pub fn read(text: &str) -> Result<Self, LayoutError> {
         let options = Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-        Ok(options.from_str(text).map_err(Box::new)?)
+        let file: Self = options.from_str(text).map_err(Box::new)?;
+        let text = text.to_owned();
+        Ok(Self { text, ..file })
+    }
+
+    /// The line, from 1, in which a name first stands as a text.
+    pub fn line_of(&self, name: &str) -> Option<usize> {
+        let before = &self.text[..self.text.find(&format!("\"{name}\""))?];
+        Some(1 + before.matches('\n').count())
+    }
+
+    /// A fault of the part with this name, with its line.
+    fn locate(&self, name: &str, error: LayoutError) -> LayoutError {
+        match (error, self.line_of(name)) {
+            (LayoutError::Fault(text), Some(line)) => fault(format!("line {line}: {text}")),
+            (error, _) => error,
+        }
     }
 
     /// The layout. `in_urdf` finds the joint that the URDF has for a name; its limits count where the file has none.
@@ -146,12 +170,18 @@ impl LayoutFile {
         let mut joints = Vec::new();
         for (i, limb) in self.limbs.iter().enumerate() {
             for (place, joint) in limb.joints.iter().enumerate() {
+                if self.still.iter().any(|(still, _)| *still == joint.name) {
+                    let problem = fault(format!("still: {} is a joint of a limb", joint.name));
+                    return Err(self.locate(&joint.name, problem));
+                }
                 let limb = LimbId(i as u8);
-                joints.push(joint.layout(JointRole::Limb { limb, place }, &in_urdf)?);
+                let layout = joint.layout(JointRole::Limb { limb, place }, &in_urdf);
+                joints.push(layout.map_err(|error| self.locate(&joint.name, error))?);
             }
         }
         let neck = self.neck.as_ref().map(|neck| {
-            joints.push(neck.layout(JointRole::Neck, &in_urdf)?);
+            let layout = neck.layout(JointRole::Neck, &in_urdf);
+            joints.push(layout.map_err(|error| self.locate(&neck.name, error))?);
             Ok::<_, LayoutError>(JointId(joints.len() as u16 - 1))
         });
         let neck = neck.transpose()?;
@@ -159,8 +189,10 @@ impl LayoutFile {
         let mut first = 0;
         for (i, limb) in self.limbs.iter().enumerate() {
             let gripper = JointId(joints.len() as u16);
-            joints.push(limb.gripper.opening(LimbId(i as u8))?);
-            limbs.push(limb.layout(first, gripper)?);
+            let opening = limb.gripper.opening(LimbId(i as u8));
+            joints.push(opening.map_err(|error| self.locate(&limb.gripper.name, error))?);
+            let layout = limb.layout(first, gripper);
+            limbs.push(layout.map_err(|error| self.locate(&limb.name, error))?);
             first += limb.joints.len() as u16;
         }
         if limbs.is_empty() {
@@ -225,6 +257,7 @@ impl LimbEntry {
                 finger: self.gripper.finger,
                 look: self.gripper.look.clone(),
                 finger_joints: self.gripper.finger_joints.clone(),
+                fingers: self.gripper.fingers.clone(),
             },
             end_effector: self.end_effector.clone(),
         })
@@ -370,7 +403,7 @@ mod tests {
         let text = TEXT.replacen("limits: (-1.7, 1.7), ", "", 1);
         assert_eq!(
             error(&text),
-            "joint left_s0: neither this file nor the URDF gives its limits"
+            "line 37: joint left_s0: neither this file nor the URDF gives its limits"
         );
         let file = LayoutFile::read(&text).unwrap();
         let layout = file.layout(|joint| (joint == "left_s0").then(|| joint_with([-1.0, 0.5])));
@@ -403,7 +436,7 @@ mod tests {
         let error = file.layout(|_| Some(joint_with([0.0; 2]))).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "joint LeftS0: the URDF lets it move from 0 to 0 only: give it `limits` here"
+            "line 37: joint LeftS0: the URDF lets it move from 0 to 0 only: give it `limits` here"
         );
     }
 
@@ -433,7 +466,11 @@ mod tests {
     #[test]
     fn faults_name_their_subject() {
         for (from, to, expected) in [
-            ("home: 0.25", "home: 2.5", "joint left_s0: its home 2.5"),
+            (
+                "home: 0.25",
+                "home: 2.5",
+                "line 37: joint left_s0: its home 2.5",
+            ),
             (
                 "\"left_s1\"",
                 "\"left_s0\"",

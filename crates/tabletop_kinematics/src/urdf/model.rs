@@ -199,7 +199,10 @@ impl Lines {
                 ));
             }
             let Some(&leader) = joint_of.get(mimic.joint.as_str()) else {
-                return Err(fault(&mimic.joint, "there is no such joint"));
+                return Err(fault(
+                    &mimic.joint,
+                    "there is no such joint; name one, or remove its <mimic>",
+                ));
             };
             found = Mimic {
                 leader: ModelJointId(leader),

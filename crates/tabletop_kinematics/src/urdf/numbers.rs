@@ -10,6 +10,9 @@ const LONGEST: f64 = 1000.0;
 /// The largest mass, in kg.
 const HEAVIEST: f64 = 1e6;
 
+/// The mass, in kg, up to which an inertia that no body has is none: makers write anything for the links of sensors.
+const LIGHTEST: f64 = 1e-3;
+
 /// The largest moment of inertia, in kg m²; beyond, products of three are not finite.
 const MOST_INERTIA: f64 = 1e12;
 
@@ -74,20 +77,24 @@ impl Numbers {
             return Err(self.fault("its mass is over 1,000,000 kg"));
         }
         let i = &inertial.inertia;
-        let fault = "its inertia is negative or not finite";
+        let fault = "its inertia is negative or not finite; correct its <inertia>, or remove its <inertial>";
         let moments = self.vector([i.ixx, i.iyy, i.izz], fault)?;
         let products = self.vector([i.ixy, i.ixz, i.iyz], fault)?;
         if moments.min_element() < 0.0 {
             return Err(self.fault(fault));
         }
-        if !is_of_a_body(moments, products) {
-            return Err(self.fault("no body has its inertia: it has a negative principal moment"));
+        let is_real = is_of_a_body(moments, products);
+        if !is_real && mass > LIGHTEST {
+            return Err(self.fault("no body has its inertia: a principal moment is negative; correct its <inertia>, or remove its <inertial>"));
         }
-        let own = DMat3::from_cols_array_2d(&[
-            [i.ixx, i.ixy, i.ixz],
-            [i.ixy, i.iyy, i.iyz],
-            [i.ixz, i.iyz, i.izz],
-        ]);
+        let own = match is_real {
+            true => DMat3::from_cols_array_2d(&[
+                [i.ixx, i.ixy, i.ixz],
+                [i.ixy, i.iyy, i.iyz],
+                [i.ixz, i.iyz, i.izz],
+            ]),
+            false => DMat3::ZERO,
+        };
         let origin = self.pose(&inertial.origin)?;
         Ok(Inertial {
             mass,

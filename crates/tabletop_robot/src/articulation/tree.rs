@@ -1,6 +1,9 @@
 //! The robot as a tree of bodies, and their poses.
 
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::{
+    collections::BTreeSet,
+    f32::consts::{FRAC_PI_2, PI},
+};
 
 use bevy::{
     math::{DAffine3, DMat3, DQuat, DVec3},
@@ -210,7 +213,16 @@ impl Articulation {
     }
 
     fn find_bodies(&self) -> Vec<Body> {
-        let links = (0..self.model.links().len()).filter_map(|i| self.link_body(i));
+        let limbs = self.layout.limb_ids();
+        let own: BTreeSet<_> = limbs
+            .flat_map(|limb| [-1, 1].map(|side| self.own_finger(limb, side)))
+            .flatten()
+            .collect();
+        let links = self
+            .model
+            .all_on(self.model.root())
+            .into_iter()
+            .filter_map(|link| self.link_body(link, &own));
         let fingers = self.layout.limb_ids().flat_map(|id| {
             let limb = self.layout.limb(id);
             let arm = limb.name;
@@ -233,13 +245,12 @@ impl Articulation {
     }
 
     /// The body of a link; `None` for mere frames, and for a description's fingers, which the simulator replaces.
-    fn link_body(&self, index: usize) -> Option<Body> {
-        let link = &self.model.links()[index];
+    fn link_body(&self, id: LinkId, fingers: &BTreeSet<LinkId>) -> Option<Body> {
+        let link = self.model.link(id);
         let is_frame = link.collisions.is_empty() && link.visuals.is_empty();
-        if is_frame || link.name.contains("_finger") {
+        if is_frame || fingers.contains(&id) || link.name.contains("_finger") {
             return None;
         }
-        let id = self.model.find_link(&link.name).ok()?;
         let parts: Vec<_> = link.collisions.iter().filter_map(convex).collect();
         Some(Body {
             id: link.name.clone(),
@@ -358,6 +369,32 @@ impl Articulation {
         )
     }
 
+    /// The links that the layout says a finger is, with all that hangs on them; `side` is -1 for the left one, 1 for the right one.
+    fn own_finger(&self, limb: LimbId, side: i8) -> Vec<LinkId> {
+        let [left, right] = &self.layout.limb(limb).gripper.fingers;
+        let names = if side < 0 { left } else { right };
+        let links = names.iter().flat_map(|name| self.model.find_link(name));
+        links.flat_map(|link| self.model.all_on(link)).collect()
+    }
+
+    /// The same links, each with its frame in the finger's, in m, where the gripper is closed: the joints that slide fingers have half of the
+    /// opening, those that turn them are at 0.
+    pub(crate) fn finger_links(&self, limb: LimbId, side: i8) -> Vec<(LinkId, DAffine3)> {
+        let gripper = &self.layout.limb(limb).gripper;
+        let [closed, _] = self.layout.joint(gripper.joint).limits;
+        let mut configuration = self.model.zero();
+        let joints = gripper.finger_joints.iter();
+        for joint in joints.flat_map(|name| self.model.find_joint(name)) {
+            configuration[joint] = closed / UNITS_PER_METER / 2.0;
+        }
+        let frames = self.model.frames(&configuration);
+        let (link, end_effector) = self.limbs[limb.index()].end_effector;
+        let finger = in_meters(self.finger(limb, side, closed as f32));
+        let to_finger = (frames[link] * end_effector * finger).inverse();
+        let links = self.own_finger(limb, side).into_iter();
+        links.map(|link| (link, to_finger * frames[link])).collect()
+    }
+
     /// The axes of a limb's joints, in m in the torso's frame.
     pub fn axes(&self, limb: LimbId, posture: &Posture) -> Vec<JointAxis> {
         let joints = self.limbs[limb.index()].chain.joints().iter();
@@ -412,7 +449,11 @@ impl Limb {
                 return Err(ModelError::NoArm {
                     base: model.link(model.root()).name.clone(),
                     tip: model.link(end_effector.0).name.clone(),
-                    reason: format!("its joints are not those of the limb {}", limb.name),
+                    reason: format!(
+                        "the joints between them are {}: these are the limb {}, in this order, unless some stand `still`",
+                        names(model, chain.joints()),
+                        limb.name
+                    ),
                 });
             }
         }
@@ -422,6 +463,12 @@ impl Limb {
             trackers: trackers.collect::<Result<_, _>>()?,
         })
     }
+}
+
+/// The names of joints, as a message lists them.
+fn names(model: &RobotModel, joints: &[ModelJointId]) -> String {
+    let names = joints.iter().map(|&joint| &*model.joint(joint).name);
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// The first of these frames whose link the model has, and the link.

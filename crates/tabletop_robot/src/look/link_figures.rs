@@ -8,7 +8,7 @@ use bevy::{
 };
 use tabletop_core::{Face, Figure, FingerLook, GripperLayout, Robot};
 use tabletop_geometry::UNITS_PER_METER;
-use tabletop_kinematics::{Geometry, Link, LinkShape};
+use tabletop_kinematics::{Geometry, Link, LinkId, LinkShape};
 
 use crate::{
     articulation::link_entities::LinkEntities,
@@ -88,9 +88,14 @@ fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Opt
                     stand_in(&link.collisions)
                 })
             }
-            Carrier::Gripper(limb, _) => {
+            Carrier::Gripper(limb, side) => {
                 let gripper = &articulation.layout.limb(limb).gripper;
-                finger(gripper, description).unwrap_or_else(|error| {
+                let own = articulation.finger_links(limb, side);
+                let figure = match own.is_empty() {
+                    true => finger(gripper, description),
+                    false => own_finger(&own, description),
+                };
+                figure.unwrap_or_else(|error| {
                     if reported.insert(error.to_string()) {
                         warn!("fingers are shown by their collision shapes: {error}");
                     }
@@ -121,7 +126,23 @@ fn seen(visual: &LinkShape, description: &Description) -> Result<Figure, LookErr
     figure_of(visual, description.source.as_ref())
 }
 
-/// The figure of a finger.
+/// The figure of a finger that the description has: its links, each with its frame in the finger's, in m.
+fn own_finger(
+    links: &[(LinkId, DAffine3)],
+    description: &Description,
+) -> Result<Option<Figure>, LookError> {
+    let visuals = links.iter().flat_map(|&(link, frame)| {
+        let visuals = description.model.link(link).visuals.iter();
+        visuals.map(move |visual| LinkShape {
+            origin: frame * visual.origin,
+            ..visual.clone()
+        })
+    });
+    let figures: Result<Vec<_>, _> = visuals.map(|visual| seen(&visual, description)).collect();
+    figures.map(merged)
+}
+
+/// The figure of a finger of the simulator.
 fn finger(gripper: &GripperLayout, description: &Description) -> Result<Option<Figure>, LookError> {
     let Some(FingerLook { file, axes }) = &gripper.look else {
         return Ok(stand_in(&[finger_solid(gripper)]));

@@ -1,12 +1,12 @@
 //! Meshes that descriptions of robots name.
 
-use std::{io, sync::Arc};
+use std::{collections::BTreeMap, io, sync::Arc};
 
 use bevy::math::Vec3;
 use tabletop_core::Figure;
-use tabletop_geometry::Rgb;
+use tabletop_geometry::{Rgb, Triangles};
 use tabletop_kinematics::{Geometry, LinkShape};
-use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
+use tabletop_mesh::{ColoredTriangles, MeshFileError, Triangle, read_collada, read_obj, read_stl};
 use tabletop_storage::{Symlinks, read_regular_file, read_regular_text};
 
 use super::{
@@ -37,8 +37,8 @@ pub(crate) fn is_ours(shape: &LinkShape) -> bool {
     matches!(&shape.geometry, Geometry::Mesh { file, .. } if file.starts_with(OUR_PACKAGE))
 }
 
-/// The figure of a mesh, in units. `source` is the description that names it, if it was read from files. A mesh without
-/// colours has this one.
+/// The figure of a mesh, in units. `source` is the description that names it, if it was read from files. What has no colour in the mesh
+/// has this one.
 pub(super) fn figure(
     file: &str,
     scale: Vec3,
@@ -62,24 +62,25 @@ pub(super) fn figure(
         return shape(file, &text);
     }
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let read = match extension.to_str() {
-        Some("stl") => read_solids,
-        Some("obj") => read_obj,
+    let read: fn(&[u8]) -> Result<Vec<ColoredTriangles>, MeshFileError> = match extension.to_str() {
+        Some("stl") => |bytes| Ok(colorless(read_stl(bytes, MOST_TRIANGLES)?.concat())),
+        Some("obj") => |bytes| read_obj(bytes, MOST_TRIANGLES).map(colorless),
+        Some("dae") => |bytes| read_collada(bytes, MOST_TRIANGLES),
         _ => {
-            let kinds = "only STL and OBJ files can be read; Blender, for example, converts others";
+            let kinds = "only STL, OBJ and COLLADA files (.dae) can be read; Blender, for example, converts others";
             return Err(failed(io::Error::other(kinds)));
         }
     };
-    let triangles = read_regular_file(&path, MOST_BYTES, Symlinks::Followed)
-        .and_then(|bytes| read(&bytes, MOST_TRIANGLES).map_err(io::Error::other))
+    let parts = read_regular_file(&path, MOST_BYTES, Symlinks::Followed)
+        .and_then(|bytes| read(&bytes).map_err(io::Error::other))
         .map_err(failed)?;
-    let hull = welded(&triangles, scale);
-    if hull.triangles.is_empty() {
+    let hulls = hulls(parts, scale, color);
+    let fine = Arc::new(shaded(&hulls));
+    if fine.indices.is_empty() {
         return Err(LookError::Empty { path });
     }
-    let fine = Arc::new(hull.shaded(color));
     let coarse = if fine.indices.len() > COARSE_TRIANGLES {
-        simplified(&hull).shaded(color).into()
+        shaded(&simplified(&hulls)).into()
     } else {
         Arc::clone(&fine)
     };
@@ -93,9 +94,37 @@ fn shape(file: &str, text: &str) -> Result<Figure, LookError> {
     })
 }
 
-/// The triangles of all solids of an STL file.
-fn read_solids(bytes: &[u8], most: usize) -> Result<Vec<Triangle>, MeshFileError> {
-    Ok(read_stl(bytes, most)?.concat())
+fn colorless(triangles: Vec<Triangle>) -> Vec<ColoredTriangles> {
+    vec![ColoredTriangles {
+        color: None,
+        triangles,
+    }]
+}
+
+/// A surface for each colour.
+fn hulls(parts: Vec<ColoredTriangles>, scale: Vec3, color: Rgb) -> Vec<(Hull, Rgb)> {
+    let mut of_color: Vec<(Rgb, Vec<Triangle>)> = Vec::new();
+    let mut places = BTreeMap::new();
+    for part in parts {
+        let color = part.color.unwrap_or(color);
+        let place = *places.entry(color.to_bytes()).or_insert_with(|| {
+            of_color.push((color, Vec::new()));
+            of_color.len() - 1
+        });
+        of_color[place].1.extend(part.triangles);
+    }
+    let hulls = of_color.into_iter();
+    hulls
+        .map(|(color, triangles)| (welded(&triangles, scale), color))
+        .collect()
+}
+
+fn shaded(hulls: &[(Hull, Rgb)]) -> Triangles {
+    let mut all = Triangles::default();
+    for (hull, color) in hulls {
+        all.append(&hull.shaded(*color));
+    }
+    all
 }
 
 /// The surface of these triangles, in m.
@@ -112,10 +141,15 @@ fn welded(triangles: &[Triangle], scale: Vec3) -> Hull {
     Hull::welded(scaled.filter(|corners| corners.iter().all(can_be_drawn)))
 }
 
-fn simplified(hull: &Hull) -> Hull {
-    let [least, most] = hull.bounds();
+fn simplified(hulls: &[(Hull, Rgb)]) -> Vec<(Hull, Rgb)> {
+    let bounds = hulls.iter().map(|(hull, _)| hull.bounds());
+    let whole = bounds.reduce(|[least, most], [low, high]| [least.min(low), most.max(high)]);
+    let [least, most] = whole.unwrap_or_default();
     let longest = (most - least).max_element().max(f32::MIN_POSITIVE);
-    hull.simplified(longest / COARSE_CELLS)
+    let simpler = hulls.iter();
+    simpler
+        .map(|(hull, color)| (hull.simplified(longest / COARSE_CELLS), *color))
+        .collect()
 }
 
 #[cfg(test)]
@@ -170,10 +204,17 @@ mod tests {
     const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
         endloop\nendfacet\nendsolid a\n";
     const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const DAE: &str = "<COLLADA><library_geometries><geometry id='g'><mesh>\
+        <source id='s'><float_array>0 0 0 1 0 0 0 1 0</float_array>\
+        <technique_common><accessor stride='3'/></technique_common></source>\
+        <vertices id='v'><input semantic='POSITION' source='#s'/></vertices>\
+        <triangles><input semantic='VERTEX' source='#v'/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>\
+        <library_visual_scenes><visual_scene><node><instance_geometry url='#g'/></node></visual_scene></library_visual_scenes></COLLADA>";
+
     #[test]
     fn meshes_are_read_scaled_and_keep_their_outside_outside() {
-        let folder = MeshFolder::with("kinds", &[("a.stl", STL), ("a.obj", OBJ)]);
-        for file in ["a.stl", "a.obj"] {
+        let folder = MeshFolder::with("kinds", &[("a.stl", STL), ("a.obj", OBJ), ("a.DAE", DAE)]);
+        for file in ["a.stl", "a.obj", "a.DAE"] {
             let figure = folder.look(file, "robot.urdf").unwrap();
             let surface = &*figure.fine;
             assert_eq!(surface.indices.len(), 1, "{file}");

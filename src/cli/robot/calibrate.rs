@@ -4,7 +4,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use crate::{
     camera::Camera,
-    core::{HeadCamera, Picture, Table},
+    core::{HeadCamera, Table},
     recorder::read_picture,
     shipped::read_faultless_task,
     vision::calibrated,
@@ -12,10 +12,10 @@ use crate::{
 use clap::Args;
 use serde_json::json;
 
-use super::{Failure, Output, allowed_paths::AllowedPaths};
+use crate::cli::{Failure, Output, allowed_paths::AllowedPaths, head_camera::taking};
 
 #[derive(Args)]
-pub(super) struct CalibrateArgs {
+pub(in crate::cli) struct CalibrateArgs {
     /// A picture of the head camera that shows edges of the table, as PNG
     #[arg(value_name = "PICTURE")]
     picture: PathBuf,
@@ -50,13 +50,4 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<ExitCode, Failure> {
     });
     Output::Stdout.write(format!("{answer}\n").as_bytes())?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// A camera whose pictures have the size of one.
-pub(super) fn taking(camera: &HeadCamera, picture: &Picture) -> HeadCamera {
-    HeadCamera {
-        width: picture.width,
-        height: picture.height,
-        ..*camera
-    }
 }
