@@ -101,12 +101,12 @@ pub(super) fn write_first(args: &DraftArgs) -> Result<ExitCode, Failure> {
     let layout = draft(&bare(urdf, text), &inside)
         .map_err(|error| Failure::input(format!("{}: {error}", urdf.display())))?;
     let written = Storage::default().write_new(&out, layout.as_bytes());
-    written.map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => Failure::input(format!(
+    written.map_err(|error| match error.kind() == ErrorKind::AlreadyExists {
+        true => Failure::input(format!(
             "{}: it exists already, and is not overwritten: name another file with --out",
             out.display()
         )),
-        _ => Failure::at(&out, error),
+        false => Failure::at(&out, error),
     })?;
     let line = format!(
         "{}: written; its comments ask what the URDF does not say\n",
