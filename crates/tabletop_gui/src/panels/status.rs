@@ -226,7 +226,7 @@ fn show(ui: &mut Ui, model: &Model) {
     row(ui, "Simulated", simulated(model));
     row(ui, "Matlab", matlab(&model.agent, model.mean.call));
     row(ui, "Recording", recording(&model.film));
-    if matches!(model.film, FilmState::Recorded { .. }) {
+    if matches!(model.film, FilmState::Recorded { .. }) || model.history.undoable > 0 {
         row(ui, "Undo", undo(&model.history));
     }
     if let Some(renderer) = &model.renderer {
@@ -283,7 +283,11 @@ fn recording(film: &FilmState) -> String {
 fn undo(history: &History) -> String {
     const MEGABYTE: usize = 1024 * 1024;
     let [used, most] = [history.bytes, history.most_bytes].map(|bytes| bytes.div_ceil(MEGABYTE));
-    let memory = format!("{} segments, {used} of {most} MB", history.undoable);
+    let segments = match history.undoable {
+        1 => "1 segment".to_owned(),
+        count => format!("{count} segments"),
+    };
+    let memory = format!("{segments}, {used} of {most} MB");
     match history.dropped {
         0 => memory,
         dropped => format!("{memory}; the first {dropped} are kept no longer"),
