@@ -5,7 +5,7 @@ use std::io::{BufRead as _, IsTerminal as _, stdin};
 use crate::{
     bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Shadow},
     core::{RobotCommand, RobotMode, Table, WriteCommand as _},
-    real::{BodyGuard, RealLink, RealRobot, RealRobotPlugin},
+    real::{BodyGuard, RealLink, RealRobot},
     robot::RobotPlugin,
     robot_body,
 };
@@ -34,7 +34,7 @@ pub(super) struct RealOptions {
     #[arg(long, value_name = "LIMBS", value_delimiter = ',', requires = "real")]
     arms: Vec<String>,
     /// The share of the greatest speeds that its joints may have, from 0.01 to 1 [default: 0.3]
-    #[arg(long, value_name = "SHARE", value_parser = SHARES, requires = "real", default_value = "0.3", hide_default_value = true)]
+    #[arg(long, value_name = "SHARE", value_parser = SHARES, requires = "real", default_value = "0.3", hide_default_value = true, allow_negative_numbers = true)]
     speed: f64,
     /// Let the real robot move to angles that are more than 0.2 rad away, such as those of an init script
     #[arg(long, requires = "real")]
@@ -59,7 +59,7 @@ impl RealOptions {
         self.shadow.as_ref().or(self.real.as_ref())
     }
 
-    /// Connects to the real robot, if there is one, and lets it stand in for the simulated one of an app.
+    /// Connects to the real robot, if there is one, and lets it stand in for the simulated one of an app with a `RealRobotPlugin`.
     pub fn attach(&self, app: &mut App, robot: &RobotPlugin, table: &Table) -> Result<(), Failure> {
         let Some(address) = self.address() else {
             return Ok(());
@@ -78,8 +78,7 @@ impl RealOptions {
                 RealRobot::new(RealLink::Driven(Box::new(bridge)), feed)
             }
         };
-        app.add_plugins(RealRobotPlugin { is_paced: true })
-            .insert_resource(real);
+        app.insert_resource(real);
         app.world_mut().write_command(RobotCommand::Show(true));
         Ok(())
     }

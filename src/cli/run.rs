@@ -22,7 +22,7 @@ use crate::{
     task_files::save_task,
 };
 use bevy::prelude::*;
-use tabletop_scenario::{Outcome, ScenarioRun, Step};
+use tabletop_scenario::{Outcome, Scenario, ScenarioRun, Step};
 
 use super::{
     Failure, Output, WRONG_INPUT,
@@ -130,14 +130,11 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         args.seed,
         hand_pictures,
     )?;
-    let setup = scenario.setup.as_ref().map(|setup| &setup.step);
-    let table = if let Some(Step::Load { file, .. }) = setup {
-        args.read_faultless(file).map_err(Failure::input)?.table
-    } else {
-        Table::default()
-    };
     let mut app = headless_app_with(plugins);
-    args.real.attach(&mut app, &robot, &table)?;
+    if args.real.address().is_some() {
+        let table = table_of(&scenario, args)?;
+        args.real.attach(&mut app, &robot, &table)?;
+    }
     let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program))
         .add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
@@ -192,6 +189,17 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     say_moved_aside(&report);
     Failure::of_all([outcome, recorded.map(drop), ends, script.result()])?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The table with which a scenario begins.
+fn table_of(scenario: &Scenario, args: &RunArgs) -> Result<Table, Failure> {
+    let setup = scenario.setup.as_ref().map(|setup| &setup.step);
+    let Some(Step::Load { file, .. }) = setup else {
+        return Ok(Table::default());
+    };
+    let folder = scenario.path.parent().unwrap_or(Path::new(""));
+    let scene = args.read_faultless(&folder.join(file));
+    Ok(scene.map_err(Failure::input)?.table)
 }
 
 /// Reports every obstacle of an arm, and every object that cannot be gripped, once.

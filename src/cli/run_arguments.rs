@@ -26,6 +26,7 @@ use super::{
 use crate::{
     TabletopSimPlugins,
     core::{RobotLayout, SceneSpec},
+    real::RealRobotPlugin,
     recorder::{HandPictures, RecorderPlugin, UnrecordedPlugin},
     robot::RobotPlugin,
     script::{FieldPolicy, ScriptPlugin, ScriptSettings},
@@ -143,10 +144,14 @@ impl RunArgs {
     /// The simulator with this robot, and the engine that was asked for.
     pub fn simulator(&self, robot: RobotPlugin) -> Result<PluginGroupBuilder, Failure> {
         let settings = self.script_settings()?;
-        Ok(TabletopSimPlugins
+        let plugins = TabletopSimPlugins
             .build()
             .set(robot)
-            .set(ScriptPlugin { settings }))
+            .set(ScriptPlugin { settings });
+        Ok(match self.real.address() {
+            Some(_) => plugins.add(RealRobotPlugin { is_paced: true }),
+            None => plugins,
+        })
     }
 
     /// The simulator with this robot and engine, and with a recorder if there is a folder for it.

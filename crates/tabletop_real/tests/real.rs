@@ -12,12 +12,14 @@ use tabletop_core::{
     Drive, Robot, RobotCommand, RobotJoint, RobotLayout, StepApp as _, WriteCommand as _,
 };
 use tabletop_real::{RealLink, RealRobot, RealRobotPlugin};
-use tabletop_sim::headless_app;
+use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
 fn app_beside(link: RealLink) -> App {
-    let mut app = headless_app();
-    app.add_plugins(RealRobotPlugin { is_paced: true })
-        .insert_resource(RealRobot::new(link, None));
+    let plugins = TabletopSimPlugins
+        .build()
+        .add(RealRobotPlugin { is_paced: true });
+    let mut app = headless_app_with(plugins);
+    app.insert_resource(RealRobot::new(link, None));
     app
 }
 

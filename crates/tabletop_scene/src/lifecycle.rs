@@ -97,7 +97,9 @@ pub(crate) fn carry_out_commands(
 ) -> Result {
     carry_out(world, reader, |world, _, command| {
         let mut tables = world.query_filtered::<(), With<Table>>();
-        if tables.iter(world).next().is_some() {
+        let is_bare = world.resource::<ObjectIndex>().iter().next().is_none();
+        let changes_nothing = is_bare && command == SceneCommand::Clear;
+        if tables.iter(world).next().is_some() && !changes_nothing {
             begin_change(world);
         }
         match command {
