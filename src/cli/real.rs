@@ -102,7 +102,6 @@ impl RealOptions {
         let mut bridge = Bridge::connect(address, profile, &options).map_err(Failure::run)?;
         let body = robot_body(robot, table).map_err(Failure::run)?;
         bridge.set_guard(BodyGuard::new(body, *table, profile.clone()));
-        bridge.arm().map_err(Failure::run)?;
         Ok(bridge)
     }
 

@@ -61,8 +61,7 @@ fn an_order_to_the_simulated_robot_moves_the_real_one_and_is_seen_there() {
         speed: 1.0,
         ..BridgeOptions::default()
     };
-    let mut bridge = Bridge::connect(&server.address(), &profile, &options).unwrap();
-    bridge.arm().unwrap();
+    let bridge = Bridge::connect(&server.address(), &profile, &options).unwrap();
     let mut app = app_beside(RealLink::Driven(Box::new(bridge)));
     app.step(3);
     let start = angle(&app, RobotJoint::LeftS0);
@@ -81,7 +80,8 @@ fn an_order_to_the_simulated_robot_moves_the_real_one_and_is_seen_there() {
     app.step(30);
     let real = app.world().resource::<RealRobot>();
     assert!(
-        real.end().is_some_and(|end| end.contains("emergency")),
+        real.end()
+            .is_some_and(|end| end.contains("a person must reset it")),
         "{:?}",
         real.end()
     );
