@@ -74,10 +74,13 @@ fn bits(app: &App) -> Vec<(String, Vec<u32>)> {
 }
 
 /// Objects that tremble for longer, by some 0.0003 units a second: scissors, whose spring holds them open, and what lies against them.
-const TREMBLING: [(&str, &[&str]); 1] = [(
-    "tablesetup/elements.xml",
-    &["bondPoint_screw0", "scissors_lower", "scissors_upper"],
-)];
+const TREMBLING: [(&str, &[&str]); 2] = [
+    (
+        "tablesetup/elements.xml",
+        &["bondPoint_screw0", "scissors_lower", "scissors_upper"],
+    ),
+    ("tablesetup/wire.xml", &["Scissors_lower", "Scissors_upper"]),
+];
 
 fn trembles(name: &str, id: &str) -> bool {
     let mut known = TREMBLING.iter();

@@ -9,7 +9,7 @@ mod belief;
 mod eyesight;
 
 use bevy::prelude::*;
-use tabletop_core::{PictureSystems, RestingSystems, SensorImage, SimSystems};
+use tabletop_core::{PictureSystems, RestingSystems, SensorImage, SimSystems, TickSystems};
 
 pub use belief::{PerceivedObject, Perception, PerceptionDemand};
 use eyesight::Eyesight;
@@ -29,6 +29,7 @@ impl Plugin for PerceptionPlugin {
                 eyesight::perceive
                     .after(PictureSystems)
                     .before(SimSystems::Record)
+                    .in_set(TickSystems)
                     .in_set(RestingSystems)
                     .run_if(PerceptionDemand::is_asked.and_then(resource_changed::<SensorImage>)),
             );

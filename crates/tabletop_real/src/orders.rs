@@ -62,6 +62,16 @@ pub(crate) fn take_over(
     let Some(bridge) = real.bridge() else {
         return;
     };
+    if bridge.watchdog() == WatchdogState::Watching {
+        // Until somebody wants something of it, it is left alone: scripts take their time to start.
+        if drives.is_empty() {
+            return;
+        }
+        if let Err(error) = bridge.arm() {
+            real.give_up(error.to_string());
+            return;
+        }
+    }
     let result =
         target_of(&drives, &layout, &state, &mut lasting).and_then(|(mut target, is_far)| {
             // What is said to the others reaches nobody.
