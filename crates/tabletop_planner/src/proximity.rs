@@ -65,7 +65,10 @@ impl RobotBody {
             }
             let rest = self.rest(number, angles);
             let meets = |one: &LinkSolid, other: &LinkSolid| {
-                self.can_meet(one.link, other.link) && one.solid.is_within(distance, &other.solid)
+                let between = one.solid.pose.location.distance(other.solid.pose.location);
+                between < one.solid.radius() + other.solid.radius() + distance
+                    && self.can_meet(one.link, other.link)
+                    && one.solid.is_within(distance, &other.solid)
             };
             let is_folded = own.iter().enumerate().any(|(i, one)| {
                 let others = own[..i].iter().chain(&rest);
