@@ -105,15 +105,6 @@ impl Watcher {
     }
 }
 
-/// What eyes know of an object.
-pub(crate) fn known_object(spec: &ObjectSpec) -> KnownObject {
-    let known = KnownObject::of(&spec.shape);
-    match spec.is_fixed() {
-        true => known.fixed(),
-        false => known,
-    }
-}
-
 /// What eyes know of objects that stand in some way, by their rotations.
 fn known_objects(
     objects: &[ObjectSpec],
@@ -121,7 +112,7 @@ fn known_objects(
     standing: impl Fn(KnownObject, Quat) -> KnownObject,
 ) -> Vec<KnownObject> {
     let known = objects.iter().map(|spec| {
-        let known = standing(known_object(spec), spec.pose.rotation);
+        let known = standing(KnownObject::described_by(spec), spec.pose.rotation);
         (spec.id.clone(), known)
     });
     with_guides(&known.collect::<Vec<_>>(), joints)

@@ -94,11 +94,7 @@ impl Knowledge<'_, '_> {
 impl Eyesight {
     fn know(&mut self, known: KnownThings, world: &VisibleWorld, is_remembering: bool) {
         let objects = known.objects.iter().map(|(_, spec)| {
-            let object = KnownObject::of(&spec.shape).on_any_side(spec.pose.rotation);
-            let object = match spec.is_fixed() {
-                true => object.fixed(),
-                false => object,
-            };
+            let object = KnownObject::described_by(spec).on_any_side(spec.pose.rotation);
             (spec.id.clone(), object)
         });
         let objects = with_guides(&objects.collect::<Vec<_>>(), &known.joints);

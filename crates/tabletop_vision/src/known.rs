@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use bevy::math::{Quat, Vec3, Vec3Swizzles as _};
 use tabletop_camera::DrawnSolid;
-use tabletop_core::{JointSpec, Shape};
+use tabletop_core::{JointSpec, ObjectSpec, Shape};
 use tabletop_geometry::{Bounds, PlacedSolid, Pose, Primitive, Rgb, Solid, turn_about};
 
 use crate::guide::Guide;
@@ -99,6 +99,15 @@ impl KnownObject {
             stances,
             is_fixed: false,
             guide: None,
+        }
+    }
+
+    /// An object of this description, fixed if nothing moves it, that stands as in its own frame.
+    pub fn described_by(spec: &ObjectSpec) -> Self {
+        let known = Self::of(&spec.shape);
+        match spec.is_fixed() {
+            true => known.fixed(),
+            false => known,
         }
     }
 

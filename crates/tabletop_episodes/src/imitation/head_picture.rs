@@ -18,10 +18,7 @@ pub struct HeadPicture {
 
 /// A stage whose robot sees with its head camera.
 pub trait HeadCameraStage: PlanningStage {
-    /// What the head camera shows now.
-    ///
-    /// # Errors
-    /// The app has no camera.
+    /// What the head camera shows now; `None` if the app has no camera.
     fn head_picture(&mut self) -> Option<HeadPicture>;
 }
 

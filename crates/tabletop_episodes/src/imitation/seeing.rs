@@ -20,7 +20,6 @@ use super::{
     advance,
     head_picture::{HeadCameraStage, HeadPicture, head_picture},
 };
-use crate::watching::known_object;
 
 /// Angle, in rad, by which the head turns for what is beside the picture.
 const PAN: f64 = 0.5;
@@ -66,7 +65,7 @@ fn known_in(task: &Task, binding: &Binding, object: &ObjectSpec) -> KnownObject 
     let tips = task.steps.iter().any(|step| {
         step.tipping.is_some() && binding.object(&step.object) == Some(object.id.as_str())
     });
-    let (known, own) = (known_object(object), object.pose.rotation);
+    let (known, own) = (KnownObject::described_by(object), object.pose.rotation);
     match tips {
         true => known.on_any_side(own),
         false => known.standing([own]),
