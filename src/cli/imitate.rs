@@ -4,7 +4,7 @@ use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
     process::ExitCode,
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use crate::{
@@ -13,12 +13,16 @@ use crate::{
     headless_app_with,
     imitation::{AppStage, SeeingStage, imitate_seeing, scattered_for},
     multiplication::with_colors_exchanged,
-    planner::{Before, Doing, Imitation, PlanningStage as _, RobotBody, imitate},
+    planner::{
+        Before, Doing, Execution, ExecutionPace, Following, Imitation, PlanningStage as _, RobotBody,
+        imitate,
+    },
     policy::{Policy, follow_policy, left_undone},
     recorder::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
         read_original,
     },
+    real::RealRobotPlugin,
     robot::RobotPlugin,
     robot_body, run_episodes, scene_at_beginning,
     shipped::read_faultless_task,
@@ -26,8 +30,9 @@ use crate::{
 };
 use bevy::prelude::*;
 use clap::Args;
+use tabletop_controller::{RobotController, Sight};
 use tabletop_core::{
-    ObjectSpec, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimTick, StepApp as _,
+    ObjectSpec, RecordingCommand, RobotCommand, RobotLayout, SceneCommand, SceneSpec, SimTick, StepApp as _,
     TICKS_PER_SECOND, WriteCommand as _,
 };
 
@@ -37,6 +42,7 @@ use super::{
     explain::{furniture, read},
     hand_cameras::HandCameraOption,
     range::{NumberRange, SEEDS},
+    real::{self, DrivenOptions},
     recorded::{self, say_moved_aside},
     robot_options::RobotChoice,
     shard::ShardOption,
@@ -49,6 +55,7 @@ const TRIALS: NumberRange<u64> = NumberRange::whole(1, 100_000);
 #[derive(Args)]
 #[command(mut_group("HandCameraOption", |options| options.requires("record")))]
 #[command(mut_group("ShardOption", |options| options.requires("trials")))]
+#[command(mut_arg("real", |real| real.requires("setup").conflicts_with_all(["trials", "seed", "exchange_colors", "eyes", "policy", "dynamic"])))]
 pub(super) struct ImitateArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
@@ -80,6 +87,8 @@ pub(super) struct ImitateArgs {
     policy: Option<PathBuf>,
     #[command(flatten)]
     robot: RobotChoice,
+    #[command(flatten)]
+    real: DrivenOptions,
     /// Record the robot; several trials get a folder each below this one
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -138,6 +147,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             exchanges_colors: args.exchange_colors,
             has_eyes: args.eyes,
             policy: policy.as_ref(),
+            real: &args.real,
             seed,
             folder,
         };
@@ -202,6 +212,7 @@ struct Attempt<'a> {
     exchanges_colors: bool,
     has_eyes: bool,
     policy: Option<&'a Policy>,
+    real: &'a DrivenOptions,
     seed: Option<u64>,
     folder: Option<PathBuf>,
 }
@@ -235,12 +246,21 @@ impl Attempt<'_> {
         let plugins = match &self.folder {
             Some(folder) => plugins.set(RecorderPlugin {
                 folder: folder.clone(),
+                header: self.real.header(),
                 hand_pictures: self.hand_pictures.clone(),
                 ..default()
             }),
             None => plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin),
         };
-        let mut app = headless_app_with(plugins);
+        let real = self.real.connect(self.robot, &scene.table)?;
+        let is_real = real.is_some();
+        let mut app = headless_app_with(match is_real {
+            true => plugins.add(RealRobotPlugin { is_paced: true }),
+            false => plugins,
+        });
+        if let Some(real) = real {
+            real::stand_in(&mut app, real);
+        }
         app.world_mut()
             .write_command(SceneCommand::Set(Box::new(scene)));
         app.world_mut().write_command(RobotCommand::Show(true));
@@ -249,8 +269,13 @@ impl Attempt<'_> {
             app.world_mut().write_command(RecordingCommand::Start);
             app.step(1);
         }
-        let imitation = self.imitate(&mut app, &binding, &objects, is_reported);
-        let report = recorded::finish(&mut app)?;
+        let imitation = match is_real {
+            true => self.imitate_for_real(&mut app, &binding),
+            false => Ok(self.imitate(&mut app, &binding, &objects, is_reported)),
+        };
+        real::release(&mut app);
+        let recorded = recorded::finish(&mut app);
+        let (imitation, report) = (imitation?, recorded?);
         let ticks = app.world().resource::<SimTick>().0;
         Ok(Trial {
             seed: self.seed,
@@ -263,6 +288,45 @@ impl Attempt<'_> {
 }
 
 impl Attempt<'_> {
+    /// Lets the real robot do it at the pace of the wall clock. The simulated objects go with what the simulated grippers hold.
+    fn imitate_for_real(&self, app: &mut App, binding: &Binding) -> Result<Imitation, Failure> {
+        let sight = Sight::of(app.world_mut());
+        let layout = app.world().resource::<RobotLayout>().clone();
+        let (body, task) = (self.body.clone(), self.task.clone());
+        let pace = ExecutionPace {
+            patience: Duration::ZERO,
+            following: Following::MACHINE,
+        };
+        let execution = Execution::begin(layout, body, task, binding.clone(), sight, 0, pace);
+        let execution = execution.map_err(|error| Failure::run(format!("planner: {error}")))?;
+        app.insert_resource(RobotController::new(execution));
+        let mut told = None;
+        loop {
+            app.step(1);
+            real::check(app)?;
+            let controller = app.world().resource::<RobotController>();
+            let Some(execution) = controller.get::<Execution>() else {
+                return Err(Failure::run("the planner was stopped"));
+            };
+            let doing = execution.doing().filter(|doing| Some(*doing) != told);
+            if let Some(doing) = doing {
+                self.tell(doing);
+                told = Some(doing);
+            }
+            if let Some(imitation) = execution.result() {
+                return Ok(imitation.clone());
+            }
+        }
+    }
+
+    /// Says what is being done.
+    fn tell(&self, doing: Doing) {
+        let again = if doing.tries > 0 { " (again)" } else { "" };
+        let sentence = self.task.step(doing.step);
+        let sentence = sentence.map_or("", |step| step.sentence.as_str());
+        say(format_args!("{}. {sentence}{again}", doing.step));
+    }
+
     fn imitate(
         &self,
         app: &mut App,
@@ -273,13 +337,7 @@ impl Attempt<'_> {
         let (task, seed) = (self.task, self.seed.unwrap_or(0));
         let tell = |doing: Doing| {
             if is_reported {
-                let again = if doing.tries > 0 { " (again)" } else { "" };
-                let sentence = task.step(doing.step).map(|step| step.sentence.as_str());
-                say(format_args!(
-                    "{}. {}{again}",
-                    doing.step,
-                    sentence.unwrap_or_default()
-                ));
+                self.tell(doing);
             }
         };
         let Some(policy) = self.policy else {

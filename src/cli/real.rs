@@ -11,12 +11,13 @@ use crate::{
 };
 use bevy::prelude::*;
 use clap::Args;
+use serde_json::{Map, Value};
 
 use super::{Failure, range::NumberRange, terminal::say};
 
 const SHARES: NumberRange<f64> = NumberRange::decimal(0.01, 1.0);
 
-/// The real robot.
+/// A real robot that is followed or driven.
 #[derive(Args, Clone)]
 pub(super) struct RealOptions {
     /// Follow a real robot, such as `baxter:ros://HOST:11311` or `baxter:ws://HOST:9090`: it is only looked at, and the simulated robot is where it is
@@ -27,6 +28,13 @@ pub(super) struct RealOptions {
         conflicts_with = "real"
     )]
     shadow: Option<Address>,
+    #[command(flatten)]
+    driven: DrivenOptions,
+}
+
+/// A real robot that is driven.
+#[derive(Args, Clone)]
+pub(super) struct DrivenOptions {
     /// Drive a real robot: whatever moves the simulated robot moves that one, and the simulated one is where it was measured (docs/real-robots.md)
     #[arg(long, value_name = "ADDRESS", group = "real_robot")]
     real: Option<Address>,
@@ -56,31 +64,56 @@ pub(super) struct RealOptions {
 impl RealOptions {
     /// The address of the real robot, if there is one.
     pub fn address(&self) -> Option<&Address> {
-        self.shadow.as_ref().or(self.real.as_ref())
+        self.shadow.as_ref().or(self.driven.address())
+    }
+
+    /// Connects to the real robot, if there is one.
+    pub fn connect(
+        &self,
+        robot: &RobotPlugin,
+        table: &Table,
+    ) -> Result<Option<RealRobot>, Failure> {
+        match &self.shadow {
+            None => self.driven.connect(robot, table),
+            Some(address) => follow(address, robot).map(Some),
+        }
     }
 
     /// Connects to the real robot, if there is one, and lets it stand in for the simulated one of an app with a `RealRobotPlugin`.
     pub fn attach(&self, app: &mut App, robot: &RobotPlugin, table: &Table) -> Result<(), Failure> {
-        let Some(address) = self.address() else {
-            return Ok(());
-        };
-        if robot.mode == RobotMode::Dynamic {
-            return Err(Failure::input(
-                "--dynamic: a real robot has motors of its own",
-            ));
+        if let Some(real) = self.connect(robot, table)? {
+            stand_in(app, real);
         }
-        let real = match self.real {
-            None => follow(address)?,
-            Some(_) => {
-                let profile = profile(address)?;
-                let bridge = self.drive(address, &profile, robot, table)?;
-                let feed = feed(address, &profile);
-                RealRobot::new(RealLink::Driven(Box::new(bridge)), feed)
-            }
-        };
-        app.insert_resource(real);
-        app.world_mut().write_command(RobotCommand::Show(true));
         Ok(())
+    }
+}
+
+impl DrivenOptions {
+    /// The address of the real robot, if there is one.
+    pub const fn address(&self) -> Option<&Address> {
+        self.real.as_ref()
+    }
+
+    /// Its entry in the header of a recording.
+    pub fn header(&self) -> Map<String, Value> {
+        header(self.address())
+    }
+
+    /// Connects to the real robot, if there is one.
+    pub fn connect(
+        &self,
+        robot: &RobotPlugin,
+        table: &Table,
+    ) -> Result<Option<RealRobot>, Failure> {
+        let Some(address) = &self.real else {
+            return Ok(None);
+        };
+        refuse_simulated_motors(robot)?;
+        let profile = profile(address)?;
+        let bridge = self.drive(address, &profile, robot, table)?;
+        let feed = feed(address, &profile);
+        let link = RealLink::Driven(Box::new(bridge));
+        Ok(Some(RealRobot::new(link, feed)))
     }
 
     fn drive(
@@ -134,13 +167,35 @@ impl RealOptions {
 }
 
 /// A real robot that is only looked at.
-pub(super) fn follow(address: &Address) -> Result<RealRobot, Failure> {
+fn follow(address: &Address, robot: &RobotPlugin) -> Result<RealRobot, Failure> {
+    refuse_simulated_motors(robot)?;
     let profile = profile(address)?;
     let shadow = Shadow::connect(address, &profile).map_err(Failure::run)?;
     Ok(RealRobot::new(
         RealLink::Shadow(shadow),
         feed(address, &profile),
     ))
+}
+
+/// The entry of a real robot in the header of a recording.
+pub(super) fn header(address: Option<&Address>) -> Map<String, Value> {
+    let entry = address.map(|address| ("real".into(), Value::from(address.to_string())));
+    entry.into_iter().collect()
+}
+
+fn refuse_simulated_motors(robot: &RobotPlugin) -> Result<(), Failure> {
+    match robot.mode {
+        RobotMode::Dynamic => Err(Failure::input(
+            "--dynamic: a real robot has motors of its own",
+        )),
+        RobotMode::Kinematic => Ok(()),
+    }
+}
+
+/// Lets a real robot stand in for the simulated one of an app with a `RealRobotPlugin`.
+pub(super) fn stand_in(app: &mut App, real: RealRobot) {
+    app.insert_resource(real);
+    app.world_mut().write_command(RobotCommand::Show(true));
 }
 
 fn profile(address: &Address) -> Result<BridgeProfile, Failure> {

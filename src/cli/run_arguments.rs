@@ -17,7 +17,7 @@ use super::{
     hand_cameras::HandCameraOption,
     jobs::JOBS,
     range::SEEDS,
-    real::RealOptions,
+    real::{self, RealOptions},
     robot_options::{EngineOptions, RobotOptions, script},
     script::headless_settings,
     seed_range::seed_range,
@@ -166,7 +166,7 @@ impl RunArgs {
         let Some(folder) = folder else {
             return Ok(plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin));
         };
-        let mut header = serde_json::Map::new();
+        let mut header = real::header(self.real.address());
         let scenario = self.scenario.as_deref().map(true_path);
         let text = |path: PathBuf| json!(path.to_string_lossy());
         header.insert("scenario".into(), json!(scenario.map(text)));
@@ -174,9 +174,6 @@ impl RunArgs {
             header.insert("setup".into(), text(true_path(setup)));
         }
         header.insert("seed".into(), json!(seed));
-        if let Some(address) = self.real.address() {
-            header.insert("real".into(), json!(address.to_string()));
-        }
         Ok(plugins.set(RecorderPlugin {
             folder: folder.to_owned(),
             header,

@@ -46,10 +46,9 @@ pub(super) struct WindowArgs {
     engine: EngineOptions,
     #[command(flatten)]
     robot: RobotOptions,
-    /// Follow a real robot, such as `baxter:ros://HOST:11311` or `baxter:ws://HOST:9090`: it is only looked at, and the simulated robot is where it is
     #[cfg(feature = "window")]
-    #[arg(long, value_name = "ADDRESS", conflicts_with = "dynamic")]
-    shadow: Option<tabletop_bridge::Address>,
+    #[command(flatten)]
+    real: super::real::RealOptions,
     #[cfg(feature = "window")]
     #[command(flatten)]
     hand_cameras: super::hand_cameras::HandCameraOption,
@@ -80,6 +79,16 @@ impl WindowArgs {
 }
 
 #[cfg(feature = "window")]
+impl WindowArgs {
+    /// The table with which the window begins.
+    fn table(&self) -> Result<crate::core::Table, Failure> {
+        let reader = task_reader().allowing(&self.allowed.folders);
+        let task = reader.read(&self.setup).map_err(Failure::input)?;
+        Ok(task.scene.table)
+    }
+}
+
+#[cfg(feature = "window")]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     use crate::window::{self, ScreenshotAt, Show, WindowOptions};
 
@@ -90,7 +99,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     }
     let robot = args.robot.plugin()?;
     let takes_picture = args.screenshot.is_some();
-    let real = args.shadow.as_ref().map(super::real::follow).transpose()?;
+    let real = args.real.connect(&robot, &args.table()?)?;
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         allowed: args.allowed.folders.clone(),

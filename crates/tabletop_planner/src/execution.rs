@@ -16,13 +16,13 @@ use crate::{
     body::RobotBody,
     failure::PlanFailure,
     imitation::{Doing, Imitation, imitate},
-    stage::{LimbOrder, PlanningStage, Stopped, drives},
+    stage::{Following, LimbOrder, PlanningStage, Stopped},
 };
 
 /// The execution of a task as a controller. It plans in a thread of its own while ticks pass, and stops when it is dropped.
 pub struct Execution {
     layout: RobotLayout,
-    patience: Duration,
+    pace: ExecutionPace,
     sights: Sender<Sight>,
     events: SyncCell<Receiver<ExecutionEvent>>,
     /// True if the plan waits for the result of its last orders.
@@ -30,6 +30,15 @@ pub struct Execution {
     is_planning: bool,
     doing: Option<Doing>,
     result: Option<Imitation>,
+}
+
+/// The pace of an execution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExecutionPace {
+    /// Time for which a tick waits for its orders; then it passes without any. With [`Duration::MAX`], the same sights lead to the same drives.
+    pub patience: Duration,
+    /// How the robot follows its orders.
+    pub following: Following,
 }
 
 /// An event of the planning thread.
@@ -42,6 +51,7 @@ enum ExecutionEvent {
 /// The world as the planning thread knows it.
 struct Correspondence {
     sight: Sight,
+    following: Following,
     sights: Receiver<Sight>,
     events: Sender<ExecutionEvent>,
 }
@@ -57,11 +67,14 @@ impl PlanningStage for Correspondence {
         self.sight = self.sights.recv().map_err(|_| Stopped)?;
         Ok(())
     }
+
+    fn following(&self) -> Following {
+        self.following
+    }
 }
 
 impl Execution {
-    /// Begins a task in a world that looks like this. `seed` decides all random choices. A tick waits for its orders as long as `patience`
-    /// allows; then it passes without any. With [`Duration::MAX`], the same sights lead to the same drives.
+    /// Begins a task in a world that looks like this. `seed` decides all random choices.
     ///
     /// # Errors
     /// The system has no thread for it.
@@ -72,7 +85,7 @@ impl Execution {
         binding: Binding,
         sight: Sight,
         seed: u64,
-        patience: Duration,
+        pace: ExecutionPace,
     ) -> io::Result<Self> {
         let (sights, seen) = channel();
         let (events, received) = channel();
@@ -80,6 +93,7 @@ impl Execution {
             let sender = events.clone();
             let mut stage = Correspondence {
                 sight,
+                following: pace.following,
                 sights: seen,
                 events,
             };
@@ -91,7 +105,7 @@ impl Execution {
         thread::Builder::new().name("planner".into()).spawn(plan)?;
         Ok(Self {
             layout,
-            patience,
+            pace,
             sights,
             events: SyncCell::new(received),
             expects_sight: false,
@@ -119,7 +133,7 @@ impl Execution {
     /// The orders for the next tick, as soon as they are known. `None` if it is still planning, or over.
     fn orders(&mut self) -> Option<Vec<LimbOrder>> {
         loop {
-            match self.events.get().recv_timeout(self.patience) {
+            match self.events.get().recv_timeout(self.pace.patience) {
                 Ok(ExecutionEvent::Doing(doing)) => self.doing = Some(doing),
                 Ok(ExecutionEvent::Orders(orders)) => return Some(orders),
                 Ok(ExecutionEvent::Over(imitation)) => self.result = Some(imitation),
@@ -149,7 +163,9 @@ impl Controller for Execution {
         let orders = self.orders();
         self.expects_sight = orders.is_some();
         self.is_planning = orders.is_none() && self.result.is_none();
-        orders.map_or(Drives::new(), |orders| drives(&self.layout, &orders))
+        orders.map_or(Drives::new(), |orders| {
+            self.pace.following.drives(&self.layout, sight, &orders)
+        })
     }
 }
 
@@ -162,6 +178,7 @@ mod tests {
     use tabletop_kinematics::baxter;
 
     use super::*;
+    use crate::stage::drives;
 
     fn body() -> RobotBody {
         RobotBody::new(RobotLayout::baxter(), baxter().unwrap(), &Table::default()).unwrap()
@@ -225,7 +242,10 @@ mod tests {
             Binding::default(),
             sight.clone(),
             7,
-            patience,
+            ExecutionPace {
+                patience,
+                following: Following::EXACT,
+            },
         );
         (begun.unwrap(), sight)
     }

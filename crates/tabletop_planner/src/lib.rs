@@ -36,7 +36,7 @@ mod transfer;
 mod transit;
 
 pub use body::{LimbBody, RobotBody};
-pub use execution::Execution;
+pub use execution::{Execution, ExecutionPace};
 pub use failure::PlanFailure;
 pub use feasible::is_feasible;
 pub use goals::{Before, goal_poses, is_met};
@@ -45,4 +45,4 @@ pub use imitation::{Doing, Imitation, imitate, undone};
 pub use proximity::NearThing;
 pub use scatter::{Piece, scatter};
 pub use sight::{Arranged, Solids};
-pub use stage::{LimbOrder, PlanningStage, Stopped, drives};
+pub use stage::{Following, LimbOrder, PlanningStage, Stopped, drives};

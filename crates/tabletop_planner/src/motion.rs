@@ -11,8 +11,6 @@ use crate::{
 
 /// Speed of fingers, in units/s.
 const FINGER_SPEED: f64 = 2.0;
-/// Largest lag of joints behind their targets, in rad.
-const LAG: f64 = 2e-3;
 /// Number of ticks without progress after which an arm counts as stopped.
 const PATIENCE: u32 = 20;
 /// Largest number of ticks for a motion of fingers.
@@ -37,6 +35,7 @@ pub(crate) fn follow(
     object: &str,
 ) -> Result<(), PlanFailure> {
     let step = f64::from(TICK_SECONDS);
+    let following = stage.following();
     let start = stage.sight().limbs[limb].angles;
     // The time, in s, at which each posture is to be reached.
     let mut schedule = vec![(0.0, start)];
@@ -60,7 +59,11 @@ pub(crate) fn follow(
         stage.tick(&orders)?;
         let reached = stage.sight().limbs[limb].angles;
         let lag = (0..reached.len()).map(|i| (reached[i] - wanted[i]).abs());
-        if lag.fold(0.0, f64::max) > LAG {
+        let most = match time >= end {
+            true => following.in_the_end,
+            false => following.under_way,
+        };
+        if lag.fold(0.0, f64::max) > most {
             stopped += 1;
             time = (time - step).max(0.0);
             if stopped > PATIENCE {
@@ -103,6 +106,7 @@ pub(crate) fn grip(
     limb: usize,
     opening: f64,
 ) -> Result<(), Stopped> {
+    let patience = stage.following().finger_patience;
     let mut still = 0;
     let mut orders = vec![LimbOrder::default(); stage.sight().limbs.len()];
     for _ in 0..FINGER_TICKS {
@@ -122,7 +126,7 @@ pub(crate) fn grip(
         } else {
             0
         };
-        if still > 6 {
+        if still > patience {
             break;
         }
     }

@@ -1,7 +1,7 @@
 //! The stage on which the planner acts.
 
 use tabletop_controller::{Angles, Drives, Sight};
-use tabletop_core::{Drive, RobotLayout};
+use tabletop_core::{Drive, RobotLayout, TICK_SECONDS};
 
 /// A world that advances tick by tick.
 pub trait PlanningStage {
@@ -14,10 +14,68 @@ pub trait PlanningStage {
     /// The robot is to stop.
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped>;
 
+    /// How the robot follows its orders.
+    fn following(&self) -> Following {
+        Following::EXACT
+    }
+
     /// Looks at the table anew. Returns the ids of the objects that it does not see well enough; in the sight, these are where they were last
     /// seen. A stage that is told every pose has nothing to look at.
     fn look(&mut self) -> Vec<String> {
         Vec::new()
+    }
+}
+
+/// How a robot follows its orders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// Largest lag of a joint under way, in rad.
+    pub under_way: f64,
+    /// Largest distance of a joint from its target in the end, in rad.
+    pub in_the_end: f64,
+    /// Number of ticks after which fingers that have not moved are stopped by something.
+    pub finger_patience: u32,
+    /// True if an arm is told the positions of its joints rather than their velocities.
+    pub by_position: bool,
+}
+
+impl Following {
+    /// Of joints that are in the next tick where they were sent.
+    pub const EXACT: Self = Self {
+        under_way: 2e-3,
+        in_the_end: 2e-3,
+        finger_patience: 6,
+        by_position: false,
+    };
+
+    /// Of a machine: its joints lag behind by some ticks, so a velocity that makes up for their lag would make them swing, and are never quite
+    /// where they were sent; its fingers take a moment until they move.
+    pub const MACHINE: Self = Self {
+        under_way: 0.1,
+        in_the_end: 0.01,
+        finger_patience: 60,
+        by_position: true,
+    };
+
+    /// The drives that carry out orders for the limbs of a robot.
+    pub(crate) fn drives(&self, layout: &RobotLayout, sight: &Sight, orders: &[LimbOrder]) -> Drives {
+        let mut drives = drives(layout, orders);
+        if self.by_position {
+            let limbs = layout.limbs.iter().zip(&sight.limbs).zip(orders);
+            for ((limb, seen), order) in limbs {
+                if order.joints.iter().all(|velocity| *velocity == 0.0) {
+                    continue;
+                }
+                let names = limb.joints.iter().map(|&joint| layout.joint(joint).name);
+                let names: Vec<_> = names.collect();
+                drives.retain(|(joint, _)| !names.contains(joint));
+                let turns = seen.angles.into_iter().zip(order.joints);
+                let positions =
+                    turns.map(|(angle, speed)| angle + speed * f64::from(TICK_SECONDS));
+                drives.extend(names.into_iter().zip(positions.map(Drive::Position)));
+            }
+        }
+        drives
     }
 }
 

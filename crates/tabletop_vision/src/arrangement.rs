@@ -272,6 +272,17 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             || open as f32 > 8.0 + 0.15 * fit.pixels as f32
     }
 
+    /// True if pixels of one object could show another.
+    pub fn share_color(&self, one: usize, other: usize) -> bool {
+        self.colors[one] == self.colors[other] && self.colors[one] != NO_COLOR
+    }
+
+    /// True if two objects have places that overlap in the picture.
+    pub fn overlap(&self, one: usize, other: usize) -> bool {
+        let windows = self.windows[one].as_ref().zip(self.windows[other].as_ref());
+        windows.is_some_and(|(one, other)| !one.intersection(other).is_empty())
+    }
+
     /// The loss of a pixel, on average, below which an object is explained well.
     fn good(&self) -> f32 {
         GOOD + 3.3 * self.noise
@@ -309,16 +320,12 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
                 return;
             }
             let before = self.remember();
-            let is_near = |one: usize, other: usize| {
-                let windows = self.windows[one].as_ref().zip(self.windows[other].as_ref());
-                windows.is_some_and(|(own, other)| !own.intersection(other).is_empty())
-            };
             let away: Vec<_> = (0..self.objects.len())
                 .filter(|&i| {
                     bad.iter().any(|&bad| {
                         bad == i
                             || self.colors[bad] == self.colors[i]
-                            || attempt % 2 == 1 && is_near(bad, i)
+                            || attempt % 2 == 1 && self.overlap(bad, i)
                     })
                 })
                 .collect();

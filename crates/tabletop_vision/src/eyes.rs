@@ -195,6 +195,7 @@ impl Eyes {
             ObjectPercept { pose, ..seen }
         });
         let mut objects: Vec<_> = percepts.collect();
+        share_doubt(&mut arrangement, &mut objects);
         keep_identities(&self.objects, &self.poses, &mut objects, |seen| seen.pose);
         let least = arrangement.unexplained();
         let clutter = clutter(arrangement.residual.size(), |i| {
@@ -237,6 +238,24 @@ impl ObjectPercept {
         visibility: Visibility::Hidden,
         is_sure: false,
     };
+}
+
+/// Doubts each object that may have been taken for one of its colour that is doubted itself.
+fn share_doubt(arrangement: &mut ObjectArrangement<'_, '_>, objects: &mut [ObjectPercept]) {
+    let mut doubted: Vec<_> = (0..objects.len())
+        .filter(|&i| !objects[i].is_sure)
+        .collect();
+    while let Some(doubt) = doubted.pop() {
+        let is_bad = arrangement.is_bad(doubt);
+        for (i, object) in objects.iter_mut().enumerate() {
+            let may_be_confused = arrangement.share_color(doubt, i)
+                && (is_bad || arrangement.overlap(doubt, i));
+            if object.is_sure && may_be_confused {
+                object.is_sure = false;
+                doubted.push(i);
+            }
+        }
+    }
 }
 
 fn percept(arrangement: &mut ObjectArrangement, object: usize) -> ObjectPercept {

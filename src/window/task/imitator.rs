@@ -9,12 +9,13 @@ use tabletop_core::{
     RestingSystems, Robot, RobotCommand, RobotLayout, Table, WriteCommand as _,
 };
 use tabletop_gui::{Notices, Tone};
-use tabletop_planner::{Execution, Imitation, RobotBody, goal_poses};
+use tabletop_planner::{Execution, ExecutionPace, Following, Imitation, RobotBody, goal_poses};
 use tabletop_robot::Description;
 use tabletop_task::Task;
 use tabletop_user::{Ghost, Ghosts, Imitating};
 
 use super::understood::{Lesson, Understood};
+use crate::real::RealRobot;
 
 /// Time for which a tick waits for its drives.
 const PATIENCE: Duration = Duration::from_millis(4);
@@ -233,7 +234,14 @@ fn begin(world: &mut World, lesson: &Lesson) -> Result<ImitatorState, String> {
     });
     let ghosts = ghosts.collect();
     let layout = world.resource::<RobotLayout>().clone();
-    let execution = Execution::begin(layout, body, task.clone(), binding, sight, SEED, PATIENCE);
+    let pace = ExecutionPace {
+        patience: PATIENCE,
+        following: match world.contains_resource::<RealRobot>() {
+            true => Following::MACHINE,
+            false => Following::EXACT,
+        },
+    };
+    let execution = Execution::begin(layout, body, task.clone(), binding, sight, SEED, pace);
     let execution = execution.map_err(|error| error.to_string())?;
     world.insert_resource(RobotController::new(execution));
     Ok(ImitatorState::Acting {
