@@ -31,6 +31,9 @@ const ENABLE_PERIOD: Duration = Duration::from_millis(100);
 /// How long a gripper may take to find out its range.
 const CALIBRATION: Duration = Duration::from_secs(10);
 
+/// How soon the watchdog notices that there is a new target, and that a new state is known.
+const ATTENTION: Duration = Duration::from_millis(1);
+
 /// How a robot is driven.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BridgeOptions {
@@ -396,7 +399,7 @@ fn calibrate(
     Ok(())
 }
 
-/// The watchdog's thread: reads until the next look is due, looks, and sends.
+/// The watchdog's thread: reads until the next look is due or the program has set a target, looks, and sends.
 fn watch(
     transport: &mut dyn Transport,
     mut reader: StateReader,
@@ -405,10 +408,22 @@ fn watch(
     clock: WallClock,
 ) {
     let mut due = clock.now();
+    let mut answered = Duration::ZERO;
     loop {
         // A look that was missed is not made up for.
         due = (due + PERIOD).max(clock.now() + PERIOD / 10);
-        let read = read_until(transport, &mut reader, clock, clock.until(due), |_| false);
+        let read = loop {
+            let slice = clock.until(due).min(ATTENTION);
+            let read = read_until(transport, &mut reader, clock, slice, |_| false);
+            let mut driving = lock(shared);
+            if driving.state.joints_at != reader.state().joints_at {
+                driving.state.clone_from(reader.state());
+            }
+            if read.is_err() || driving.set_at > answered || clock.until(due).is_zero() {
+                answered = driving.set_at;
+                break read;
+            }
+        };
         let now = clock.now();
         let (orders, is_done) = {
             let mut driving = lock(shared);

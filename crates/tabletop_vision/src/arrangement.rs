@@ -12,6 +12,7 @@ use crate::{
     refine::{Refinement, TRACKING},
     residual::{OUTLIER, Residual, TriedFit, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
+    support,
 };
 
 /// The part of what an object should explain that it has to explain at least.
@@ -207,7 +208,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             (0..self.objects.len()).partition(|&i| self.objects[i].guide().is_some());
         for &i in [&guided, &free, &guided].into_iter().flatten() {
             let fit = self.fit(i);
-            if fit.misfit > good * fit.pixels as f32 {
+            if fit.misfit > good * fit.pixels as f32 || self.hovers(i) {
                 self.settle(i, &TRACKING, true);
             }
         }
@@ -220,6 +221,18 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         if self.placements.contains(&None) {
             self.arrange(&mut || 1.0);
         }
+    }
+
+    /// True if an object that no joint holds stands on nothing: it may have been let go since.
+    fn hovers(&self, object: usize) -> bool {
+        let known = &self.objects[object];
+        let Some(placement) = self.placements[object].filter(|_| known.guide().is_none()) else {
+            return false;
+        };
+        let others = (self.objects.iter().zip(&self.placements).enumerate())
+            .filter(|(other, _)| *other != object)
+            .filter_map(|(_, (other, placement))| Some((other, placement.as_ref()?)));
+        !support::stands(known, &placement, others)
     }
 
     /// Finds all objects without a placement, and settles all.

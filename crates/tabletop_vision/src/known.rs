@@ -116,7 +116,7 @@ impl KnownObject {
     #[must_use]
     pub fn standing(mut self, rotations: impl IntoIterator<Item = Quat>) -> Self {
         let mut stances: Vec<Stance> = Vec::new();
-        for rotation in rotations {
+        for rotation in rotations.into_iter().map(without_yaw) {
             let stance = Stance::of(&self.drawn, &self.touched, rotation);
             if stances.iter().all(|known| stance.turn_to(known).is_none()) {
                 stances.push(stance);
@@ -298,6 +298,18 @@ impl KnownObject {
             whole.stances[placement.stance].drawn.extend(drawn);
         }
         whole
+    }
+}
+
+/// A rotation before any turn about the vertical: objects that stand alike in different directions have equal stances.
+fn without_yaw(rotation: Quat) -> Quat {
+    /// Largest sine of half the tilt, in rad, of an object that stands upright.
+    const UPRIGHT: f32 = 1e-4;
+    let yaw = 2.0 * libm::atan2f(rotation.z, rotation.w);
+    let tilt = turn_about(Vec3::Z, -yaw) * rotation;
+    match tilt.xyz().length() < UPRIGHT {
+        true => Quat::IDENTITY,
+        false => tilt.normalize(),
     }
 }
 
@@ -498,6 +510,17 @@ fn is_round(solid: &Primitive) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn objects_in_different_directions_are_known_alike() {
+        let bar = Shape::Block {
+            span: Vec3::new(3.0, 1.0, 1.0),
+            color: Rgb::RED,
+        };
+        let turned = |yaw| KnownObject::of(&bar).standing([turn_about(Vec3::Z, yaw)]);
+        assert_eq!(turned(0.3), turned(2.0));
+        assert_eq!(turned(0.3), KnownObject::of(&bar));
+    }
 
     #[test]
     fn a_turned_object_stands_on_a_side_of_its_own() {

@@ -40,6 +40,17 @@ pub(crate) fn heights<'o>(
     heights
 }
 
+/// True if an object stands on the table or on one of the others.
+pub(crate) fn stands<'o>(
+    object: &KnownObject,
+    placement: &StandingPose,
+    others: impl IntoIterator<Item = (&'o KnownObject, &'o StandingPose)>,
+) -> bool {
+    heights(object, placement, others)
+        .iter()
+        .any(|height| (height - placement.location.z).abs() < SAME_HEIGHT)
+}
+
 /// The gap between two solids, seen from above, or less if it is large.
 fn gap_from_above(one: &StandingSolid, other: &StandingSolid) -> f32 {
     let [a, b] = [one, other].map(|it| it.center.truncate());

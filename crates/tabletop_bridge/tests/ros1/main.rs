@@ -147,9 +147,11 @@ fn an_emergency_stop_ends_the_commands() {
         })?;
         baxter.order("estop");
         drive.until_stopped(&first_joint("right", 0.5));
-        let known = baxter.report().modes["right"].len();
-        // At 100 Hz, with what was on its way.
-        assert!(known < 25, "{known}");
+        let report = baxter.report();
+        let known = report.modes["right"].len();
+        let last = report.log["right"].last().map_or(0.0, |(time, _)| *time);
+        let late = last - report.stopped_at;
+        assert!(late < 0.25, "{late}");
         drive.stop(StopReason::EmergencyStop)?;
         let then = baxter.order("reset");
         assert_eq!(then.modes["right"].len(), known);

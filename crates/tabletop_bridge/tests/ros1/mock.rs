@@ -9,7 +9,7 @@ use std::{
 use serde::Deserialize;
 use tabletop_bridge::Address;
 
-const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/ros1/mock_baxter.py");
+const SOURCE: &str = include_str!("mock_baxter.py");
 
 /// It ends with its standard input, so with this program, however that ends.
 pub struct MockBaxter {
@@ -31,13 +31,22 @@ pub struct Report {
     pub head: f64,
     pub opened: Option<(String, u32, u32, Vec<i32>)>,
     pub enabled: bool,
+    /// Each command to an arm: when it came, in s since 1970, and its first number.
+    pub log: BTreeMap<String, Vec<(f64, f64)>>,
+    /// When the robot was stopped last, in s since 1970.
+    pub stopped_at: f64,
 }
 
 impl MockBaxter {
     pub fn start() -> Self {
+        Self::start_at(&BTreeMap::new())
+    }
+
+    /// With joints at these angles, in rad, and the others at 0.5.
+    pub fn start_at(angles: &BTreeMap<String, f64>) -> Self {
         let mut command = Command::new("/usr/bin/python3");
         command
-            .arg(SOURCE)
+            .args(["-c", SOURCE, &serde_json::to_string(angles).unwrap()])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped());
         let mut child = command.spawn().unwrap();
@@ -64,7 +73,7 @@ impl MockBaxter {
         self.port
     }
 
-    /// Gives an order: `estop`, `reset`, `disable`, `error`, `stick`, `silence`, or anything else for a report alone.
+    /// Gives an order: `estop`, `reset`, `disable`, `error`, `stick`, `silence`, `forget` (the log), or anything else for a report alone.
     pub fn order(&mut self, order: &str) -> Report {
         writeln!(self.orders.as_mut().unwrap(), "{order}").unwrap();
         let mut line = String::new();

@@ -167,9 +167,11 @@ class Arm:
         self.commanded_at = 0.0
         self.modes = []
         self.dropped = 0
+        self.log = []
 
     def command(self, message):
         self.modes.append(message.mode)
+        self.log.append((time.time(), message.command[0]))
         given = dict(zip(message.names, message.command))
         if message.mode == 2:
             if any(not self.may_turn(name, speed) for name, speed in given.items()):
@@ -224,6 +226,7 @@ class Baxter:
         self.state = CLASSES["AssemblyState"](ready=True, enabled=True)
         self.head = 0.0
         self.opened = None
+        self.stopped_at = 0.0
         self.is_stuck = self.is_silent = False
         self.joint_states = rospy.Publisher("/robot/joint_states", JointState, queue_size=10, tcp_nodelay=True)
         self.states = rospy.Publisher("/robot/state", CLASSES["AssemblyState"], queue_size=10, latch=True)
@@ -264,6 +267,7 @@ class Baxter:
         with self.lock:
             if order == "estop":
                 self.state.enabled, self.state.stopped, self.state.estop_button = False, True, 1
+                self.stopped_at = time.time()
                 for arm in self.arms.values():
                     arm.modes = []
             elif order == "reset":
@@ -276,6 +280,9 @@ class Baxter:
                 self.is_stuck = True
             elif order == "silence":
                 self.is_silent = True
+            elif order == "forget":
+                for arm in self.arms.values():
+                    arm.log = []
             self.states.publish(self.state)
             return {
                 "angles": {name: angle for arm in self.arms.values() for name, angle in arm.angles.items()},
@@ -287,6 +294,8 @@ class Baxter:
                 "head": self.head,
                 "opened": self.opened,
                 "enabled": bool(self.state.enabled),
+                "log": {side: arm.log for side, arm in self.arms.items()},
+                "stopped_at": self.stopped_at,
             }
 
     def tick(self, seconds):
@@ -328,6 +337,7 @@ class Baxter:
 
 
 def main():
+    home = json.loads(sys.argv[1]) if len(sys.argv) > 1 else {}
     master = rosmaster.master.Master(port=0)
     master.start()
     while not master.ok() or not master.uri:
@@ -335,6 +345,8 @@ def main():
     os.environ["ROS_MASTER_URI"] = master.uri
     rospy.init_node("baxter", disable_signals=True)
     baxter = Baxter()
+    for arm in baxter.arms.values():
+        arm.angles.update({name: home[name] for name in arm.names if name in home})
     threading.Thread(target=baxter.run, daemon=True).start()
     print(master.uri.rstrip("/").rsplit(":", 1)[1], flush=True)
     for line in sys.stdin:

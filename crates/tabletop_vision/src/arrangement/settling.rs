@@ -90,10 +90,7 @@ impl ObjectArrangement<'_, '_> {
             .filter_map(|(_, (other, placement))| Some((other, placement.as_ref()?)));
         refinement.is_free = false;
         let (mut settled, trial) = refinement.refined(before, stages);
-        let heights = support::heights(known, &settled, others.clone());
-        let stands = heights
-            .iter()
-            .any(|height| (height - settled.location.z).abs() < 1e-3);
+        let stands = support::stands(known, &settled, others.clone());
         if !known.is_fixed() && (!stands || trial.misfit > good * trial.pixels as f32) {
             let here = settled;
             refinement.is_free = true;
