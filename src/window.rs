@@ -16,6 +16,7 @@ mod task;
 
 pub use display::DisplayOptions;
 pub use no_window::NoWindow;
+pub use real_robot::Connected;
 pub use screenshot::ScreenshotAt;
 pub use tabletop_gui::display::{Antialiasing, Resolution};
 
@@ -34,7 +35,6 @@ use self::opening::{Beginning, Opening};
 use crate::{
     TabletopSimPlugins, TabletopWindowPlugins,
     history::HistoryPlugin,
-    real::{RealRobot, RealRobotPlugin},
     recorder::{HandPictures, RecorderPlugin},
     replay::{PlaybackPlugin, Replay},
     robot::RobotPlugin,
@@ -112,11 +112,10 @@ pub fn run(options: WindowOptions) -> Result<AppExit, NoWindow> {
 /// # Errors
 ///
 /// As [`run`].
-pub fn run_beside(options: WindowOptions, real: Option<RealRobot>) -> Result<AppExit, NoWindow> {
+pub fn run_beside(options: WindowOptions, real: Option<Connected>) -> Result<AppExit, NoWindow> {
     let mut app = no_window::catch(|| build(options))?;
     if let Some(real) = real {
-        app.add_plugins((RealRobotPlugin::default(), real_robot::plugin))
-            .insert_resource(real);
+        real.stand_in(&mut app);
     }
     app.add_plugins((PanicHandlerPlugin, log(), TerminalCtrlCHandlerPlugin));
     Ok(app.run())
@@ -174,6 +173,7 @@ fn build(options: WindowOptions) -> App {
         frame_rate::plugin,
         idle::plugin,
         opening::plugin,
+        real_robot::plugin,
         redraw::plugin,
         replay::plugin,
         task::plugin,

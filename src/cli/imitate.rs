@@ -14,15 +14,15 @@ use crate::{
     imitation::{AppStage, SeeingStage, imitate_seeing, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{
-        Before, Doing, Execution, ExecutionPace, Following, Imitation, PlanningStage as _, RobotBody,
-        imitate,
+        Before, Doing, Execution, ExecutionPace, Following, Imitation, PlanningStage as _,
+        RobotBody, imitate,
     },
     policy::{Policy, follow_policy, left_undone},
+    real::RealRobotPlugin,
     recorder::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
         read_original,
     },
-    real::RealRobotPlugin,
     robot::RobotPlugin,
     robot_body, run_episodes, scene_at_beginning,
     shipped::read_faultless_task,
@@ -32,8 +32,8 @@ use bevy::prelude::*;
 use clap::Args;
 use tabletop_controller::{RobotController, Sight};
 use tabletop_core::{
-    ObjectSpec, RecordingCommand, RobotCommand, RobotLayout, SceneCommand, SceneSpec, SimTick, StepApp as _,
-    TICKS_PER_SECOND, WriteCommand as _,
+    ObjectSpec, RecordingCommand, RobotCommand, RobotLayout, SceneCommand, SceneSpec, SimTick,
+    StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
 };
 
 use super::{

@@ -90,7 +90,7 @@ impl WindowArgs {
 
 #[cfg(feature = "window")]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
-    use crate::window::{self, ScreenshotAt, Show, WindowOptions};
+    use crate::window::{self, Connected, ScreenshotAt, Show, WindowOptions};
 
     let result = args.read_files()?;
     let mut display = args.display.options();
@@ -100,6 +100,9 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     let robot = args.robot.plugin()?;
     let takes_picture = args.screenshot.is_some();
     let real = args.real.connect(&robot, &args.table()?)?;
+    let address = args.real.address().map(ToString::to_string);
+    let real = real.zip(address);
+    let real = real.map(|(robot, address)| Connected { address, robot });
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         allowed: args.allowed.folders.clone(),

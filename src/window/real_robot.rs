@@ -1,22 +1,189 @@
-//! A real robot that is followed: the reason why it is followed no longer.
+//! The real robot: the user connects to it, and lets go of it.
 
-use bevy::prelude::*;
-use tabletop_core::RestApp as _;
+use bevy::{
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, futures::check_ready},
+};
+use tabletop_core::{
+    Actor, CommandWriter, Robot, RobotCommand, RobotLayout, RobotMode, Table, WriteCommand as _,
+};
 use tabletop_gui::{Notices, Tone};
+use tabletop_robot::Description;
+use tabletop_user::{Connection, ConnectionOrder, DrivingLeave};
 
-use crate::real::RealRobot;
+use crate::{
+    bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Shadow},
+    planner::RobotBody,
+    real::{BodyGuard, RealLink, RealRobot, RealRobotPlugin},
+};
+
+/// The attempt to connect, and the address.
+#[derive(Resource, Default)]
+struct Attempt(Option<(String, Task<Result<RealRobot, String>>)>);
 
 pub(super) fn plugin(app: &mut App) {
-    // It moves by itself.
-    app.wake_while(is_followed).add_systems(Update, note_end);
+    app.add_plugins(RealRobotPlugin::default())
+        .init_resource::<Attempt>()
+        .add_systems(Update, (obey, take_robot, note_end).chain());
 }
 
-fn is_followed(real: Option<Res<RealRobot>>) -> bool {
-    real.is_some_and(|real| real.end().is_none())
+/// A robot that was connected to before there was a window, and its address.
+pub struct Connected {
+    /// The address.
+    pub address: String,
+    /// The robot.
+    pub robot: RealRobot,
 }
 
-fn note_end(real: Option<Res<RealRobot>>, mut notices: ResMut<Notices>) {
-    if let Some(end) = real.as_ref().and_then(|real| real.end()) {
-        notices.add(Tone::Fault, &format!("the real robot: {end}"));
+impl Connected {
+    /// Lets it stand in for the simulated robot of an app.
+    pub(super) fn stand_in(self, app: &mut App) {
+        app.insert_resource(connection_to(self.address, &self.robot))
+            .insert_resource(self.robot);
+        app.world_mut()
+            .write_command_of(Actor::Panel, RobotCommand::Show(true));
     }
+}
+
+fn connection_to(address: String, robot: &RealRobot) -> Connection {
+    match robot.is_driven() {
+        true => Connection::Driving(address),
+        false => Connection::Following(address),
+    }
+}
+
+/// The simulated robot, as a model of the one that is driven.
+struct Model {
+    layout: RobotLayout,
+    kinematics: crate::kinematics::RobotModel,
+    table: Table,
+}
+
+fn obey(
+    mut orders: MessageReader<ConnectionOrder>,
+    mut attempt: ResMut<Attempt>,
+    mut connection: ResMut<Connection>,
+    mut notices: ResMut<Notices>,
+    mut commands: Commands,
+    description: Option<Res<Description>>,
+    robot: Res<Robot>,
+    tables: Query<&Table>,
+    real: Option<Res<RealRobot>>,
+) {
+    for order in orders.read() {
+        let (address, leave) = match order {
+            ConnectionOrder::Stop => {
+                attempt.0 = None;
+                *connection = match *connection {
+                    Connection::Driving(_) => {
+                        let end = "it was stopped, and holds its position";
+                        notices.append(Tone::Event, &format!("the real robot: {end}"));
+                        Connection::Ended(end.into())
+                    }
+                    Connection::None
+                    | Connection::Connecting(_)
+                    | Connection::Following(_)
+                    | Connection::Ended(_) => Connection::None,
+                };
+                // Dropping it brings it to rest.
+                commands.remove_resource::<RealRobot>();
+                continue;
+            }
+            ConnectionOrder::Follow { address } => (address, None),
+            ConnectionOrder::Drive { address, leave } => (address, Some(*leave)),
+        };
+        if real.is_some() || attempt.0.is_some() {
+            continue;
+        }
+        let Some(description) = &description else {
+            *connection = Connection::Ended("there is no simulated robot".into());
+            continue;
+        };
+        if robot.mode == RobotMode::Dynamic {
+            let reason = "a real robot has motors of its own: begin without --dynamic";
+            *connection = Connection::Ended(reason.into());
+            continue;
+        }
+        let model = Model {
+            layout: description.layout.clone(),
+            kinematics: description.model.clone(),
+            table: tables.iter().next().copied().unwrap_or_default(),
+        };
+        *connection = Connection::Connecting(address.clone());
+        let name = address.clone();
+        let connect = async move { connect(&name, leave, model) };
+        let task = AsyncComputeTaskPool::get().spawn(connect);
+        attempt.0 = Some((address.clone(), task));
+    }
+}
+
+/// Connects, in the background. It takes some seconds if nobody answers.
+fn connect(address: &str, leave: Option<DrivingLeave>, model: Model) -> Result<RealRobot, String> {
+    let address: Address = address.parse().map_err(|error| format!("{error}"))?;
+    let profile = BridgeProfile::shipped(&address.robot).map_err(|error| error.to_string())?;
+    let link = match leave {
+        None => RealLink::Shadow(Shadow::connect(&address, &profile).map_err(|it| it.to_string())?),
+        Some(leave) => {
+            let options = BridgeOptions {
+                speed: leave.speed,
+                enable: leave.enable,
+                calibrate: leave.calibrate,
+                allow_moves: leave.moves,
+                ..BridgeOptions::default()
+            };
+            let bridge = Bridge::connect(&address, &profile, &options);
+            let mut bridge = bridge.map_err(|error| error.to_string())?;
+            let body = RobotBody::new(&model.layout, model.kinematics, &model.table);
+            let body = body.map_err(|error| error.to_string())?;
+            bridge.set_guard(BodyGuard::new(body, model.table, profile.clone()));
+            RealLink::Driven(Box::new(bridge))
+        }
+    };
+    let shows_pictures = profile.cameras.iter().any(|camera| camera.name == HEAD);
+    let feed = shows_pictures.then(|| PictureFeed::connect(&address, &profile, HEAD));
+    Ok(RealRobot::new(link, feed.and_then(Result::ok)))
+}
+
+/// The name of the camera in the head.
+const HEAD: &str = "head";
+
+/// Lets a robot that was found stand in for the simulated one.
+fn take_robot(
+    mut attempt: ResMut<Attempt>,
+    mut connection: ResMut<Connection>,
+    mut commands: Commands,
+    mut orders: CommandWriter,
+) {
+    let Some((address, task)) = &mut attempt.bypass_change_detection().0 else {
+        return;
+    };
+    let Some(result) = check_ready(task) else {
+        return;
+    };
+    let address = address.clone();
+    attempt.0 = None;
+    *connection = match result {
+        Err(reason) => Connection::Ended(reason),
+        Ok(real) => {
+            let connection = connection_to(address, &real);
+            commands.insert_resource(real);
+            orders.write(Actor::Panel, RobotCommand::Show(true));
+            connection
+        }
+    };
+}
+
+/// Lets go of a robot that is followed or driven no longer, and says why.
+fn note_end(
+    real: Option<Res<RealRobot>>,
+    mut connection: ResMut<Connection>,
+    mut notices: ResMut<Notices>,
+    mut commands: Commands,
+) {
+    let Some(end) = real.as_ref().and_then(|real| real.end()) else {
+        return;
+    };
+    notices.append(Tone::Fault, &format!("the real robot: {end}"));
+    *connection = Connection::Ended(end.to_owned());
+    commands.remove_resource::<RealRobot>();
 }

@@ -134,7 +134,11 @@ fn press(count: usize) {
         baxter.order("reset");
         baxter.order("forget");
     }
-    print("an emergency stop is followed by commands for", "ms", &mut late);
+    print(
+        "an emergency stop is followed by commands for",
+        "ms",
+        &mut late,
+    );
 }
 
 fn hurry() {

@@ -58,7 +58,12 @@ impl Following {
     };
 
     /// The drives that carry out orders for the limbs of a robot.
-    pub(crate) fn drives(&self, layout: &RobotLayout, sight: &Sight, orders: &[LimbOrder]) -> Drives {
+    pub(crate) fn drives(
+        &self,
+        layout: &RobotLayout,
+        sight: &Sight,
+        orders: &[LimbOrder],
+    ) -> Drives {
         let mut drives = drives(layout, orders);
         if self.by_position {
             let limbs = layout.limbs.iter().zip(&sight.limbs).zip(orders);
@@ -70,8 +75,7 @@ impl Following {
                 let names: Vec<_> = names.collect();
                 drives.retain(|(joint, _)| !names.contains(joint));
                 let turns = seen.angles.into_iter().zip(order.joints);
-                let positions =
-                    turns.map(|(angle, speed)| angle + speed * f64::from(TICK_SECONDS));
+                let positions = turns.map(|(angle, speed)| angle + speed * f64::from(TICK_SECONDS));
                 drives.extend(names.into_iter().zip(positions.map(Drive::Position)));
             }
         }

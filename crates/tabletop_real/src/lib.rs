@@ -14,7 +14,10 @@ mod robot;
 mod sight;
 
 use bevy::prelude::*;
-use tabletop_core::{OrderSystems, PictureSystems, SensorImage, SimSystems, TickSystems};
+use tabletop_core::{
+    OrderSystems, PictureSystems, RestApp as _, RestingSystems, SensorImage, SimSystems,
+    TickSystems,
+};
 
 pub use body_guard::BodyGuard;
 pub use robot::{RealLink, RealRobot};
@@ -34,14 +37,18 @@ impl Plugin for RealRobotPlugin {
                 .chain()
                 .after(OrderSystems::Script)
                 .before(TickSystems)
-                .run_if(resource_exists::<RealRobot>),
-        );
+                .run_if(resource_exists::<RealRobot>)
+                .in_set(RestingSystems),
+        )
+        // It moves by itself.
+        .wake_while(resource_exists::<RealRobot>);
         app.init_resource::<SensorImage>().add_systems(
             FixedUpdate,
             sight::see
                 .after(PictureSystems)
                 .before(SimSystems::Record)
-                .run_if(resource_exists::<RealRobot>),
+                .run_if(resource_exists::<RealRobot>)
+                .in_set(RestingSystems),
         );
         if self.is_paced {
             app.init_resource::<pace::TickDue>()

@@ -48,6 +48,11 @@ impl RealRobot {
         }
     }
 
+    /// True if it is driven, and not only looked at.
+    pub const fn is_driven(&self) -> bool {
+        matches!(self.link, RealLink::Driven(_))
+    }
+
     /// Why it is followed or driven no longer; none as long as it is.
     pub fn end(&self) -> Option<&str> {
         self.end.as_deref()

@@ -1,8 +1,9 @@
-//! The user before the window: keys and their actions, the camera he looks through, the plane he drags in, the pace of time, and the
-//! imitation and the edits of a recording that he watches.
+//! The user before the window: keys and their actions, the camera he looks through, the plane he drags in, the pace of time, the
+//! imitation and the edits of a recording that he watches, and the real robot that he connects to.
 //!
 //! View and panels share it and do not know each other. A world without a window has none of it.
 
+mod connection;
 mod drag_plane;
 mod editing;
 mod ghost;
@@ -11,6 +12,7 @@ mod keymap;
 mod navigation;
 mod pace;
 
+pub use connection::{Connection, ConnectionOrder, DrivingLeave};
 pub use drag_plane::DragPlane;
 pub use editing::{EditOrder, Editing, TimelineEdit};
 pub use ghost::{Ghost, Ghosts};
@@ -40,8 +42,10 @@ impl UserPlugin {
 impl Plugin for UserPlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<CameraMotion>()
+            .add_message::<ConnectionOrder>()
             .add_message::<EditOrder>()
             .add_message::<TaskOrder>()
+            .init_resource::<Connection>()
             .init_resource::<DragPlane>()
             .init_resource::<Editing>()
             .init_resource::<Ghosts>()

@@ -248,8 +248,8 @@ fn share_doubt(arrangement: &mut ObjectArrangement<'_, '_>, objects: &mut [Objec
     while let Some(doubt) = doubted.pop() {
         let is_bad = arrangement.is_bad(doubt);
         for (i, object) in objects.iter_mut().enumerate() {
-            let may_be_confused = arrangement.share_color(doubt, i)
-                && (is_bad || arrangement.overlap(doubt, i));
+            let may_be_confused =
+                arrangement.share_color(doubt, i) && (is_bad || arrangement.overlap(doubt, i));
             if object.is_sure && may_be_confused {
                 object.is_sure = false;
                 doubted.push(i);

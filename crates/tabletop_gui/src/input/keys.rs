@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{Actor, ClockCommand, CommandWriter, Paused, Recording};
-use tabletop_user::{Action, Editing, KeySystems, was_struck};
+use tabletop_user::{Action, Connection, ConnectionOrder, Editing, KeySystems, was_struck};
 
 use crate::panels::{context_menu::ContextMenu, quit::QuitQuestion};
 
@@ -15,7 +15,8 @@ pub(crate) fn plugin(app: &mut App) {
             RunFixedMainLoop,
             (
                 toggle_pause.run_if(was_struck(Action::Pause)),
-                quit.run_if(was_struck(Action::Quit)),
+                quit.run_if(was_struck(Action::Quit)).run_if(not(drives)),
+                stop.run_if(drives),
             )
                 .in_set(KeySystems),
         );
@@ -23,6 +24,17 @@ pub(crate) fn plugin(app: &mut App) {
 
 fn toggle_pause(paused: Res<Paused>, mut commands: CommandWriter) {
     commands.write(Actor::Key, ClockCommand::SetPaused(!paused.0));
+}
+
+fn drives(connection: Res<Connection>) -> bool {
+    connection.drives()
+}
+
+/// Stops the real robot, whatever else is in front.
+fn stop(keys: Res<ButtonInput<KeyCode>>, mut orders: MessageWriter<ConnectionOrder>) {
+    if keys.just_pressed(KeyCode::Escape) {
+        orders.write(ConnectionOrder::Stop);
+    }
 }
 
 /// Closes the menu that is open, or ends the program; asks before that if a recording runs, or edits are not saved.
@@ -41,7 +53,7 @@ fn quit(
 
 #[cfg(test)]
 mod tests {
-    use tabletop_user::UserPlugin;
+    use tabletop_user::{KeyboardFocus, UserPlugin};
 
     use super::*;
     use bevy::time::TimeUpdateStrategy;
@@ -101,6 +113,17 @@ mod tests {
         app.insert_resource(Recording(true));
         strike(&mut app, KeyCode::Escape);
         assert_eq!(app.should_exit(), None);
+    }
+
+    #[test]
+    fn escape_stops_a_real_robot_before_it_quits() {
+        let mut app = app();
+        app.insert_resource(Connection::Driving("baxter:ros://there".into()))
+            .insert_resource(KeyboardFocus::Text);
+        strike(&mut app, KeyCode::Escape);
+        assert_eq!(app.should_exit(), None);
+        let orders = app.world().resource::<Messages<ConnectionOrder>>();
+        assert_eq!(orders.iter_current_update_messages().count(), 1);
     }
 
     #[test]

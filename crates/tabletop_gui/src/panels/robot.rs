@@ -3,6 +3,7 @@
 mod joint;
 mod model;
 mod reading;
+mod real;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -16,11 +17,12 @@ use tabletop_core::{
     Actor, Agent, CommandWriter, Drive, Face, LimbId, ObjectSpec, Robot, RobotCommand, RobotLayout,
     ScriptCommand,
 };
-use tabletop_user::{Action, Keymap};
+use tabletop_user::{Action, Connection, ConnectionOrder, Keymap};
 
 use self::{
     joint::{JointSelection, goal, joint},
     model::{Model, Request, RobotInput},
+    real::{ConnectionDraft, real_robot},
     state::state,
 };
 use crate::{
@@ -41,6 +43,7 @@ struct Sources<'w, 's> {
     specs: Query<'w, 's, &'static ObjectSpec>,
     agent: Res<'w, Agent>,
     keymap: Res<'w, Keymap>,
+    connection: Res<'w, Connection>,
 }
 
 impl Sources<'_, '_> {
@@ -55,11 +58,12 @@ fn show_panel(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
     sources: Sources,
-    mut selection: Local<JointSelection>,
+    mut drafts: Local<Drafts>,
     mut head_view: ResMut<HeadView>,
     mut jog: ResMut<Jog>,
     mut commands: CommandWriter,
     mut orders: MessageWriter<ScriptCommand>,
+    mut connections: MessageWriter<ConnectionOrder>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
@@ -74,8 +78,9 @@ fn show_panel(
         shows_head_view: head_view.is_shown(),
         is_scripted: sources.agent.is_on(),
         keymap: &sources.keymap,
+        connection: &sources.connection,
     };
-    let input = Panel::Robot.show(context, &mut panels, |ui| show(ui, &model, &mut selection));
+    let input = Panel::Robot.show(context, &mut panels, |ui| show(ui, &model, &mut drafts));
     let RobotInput { pressed, requests } = input.unwrap_or_default();
     jog.buttons.update(pressed.held, pressed.struck);
     for request in requests {
@@ -100,11 +105,25 @@ fn show_panel(
             Request::ShowFace(face) => {
                 commands.write(Actor::Panel, RobotCommand::ShowFace(face));
             }
+            Request::Connection(order) => {
+                connections.write(order);
+            }
         }
     }
 }
 
-fn show(ui: &mut Ui, model: &Model, selection: &mut JointSelection) -> RobotInput {
+/// What the user has chosen and typed in the window.
+#[derive(Default)]
+struct Drafts {
+    selection: JointSelection,
+    connection: ConnectionDraft,
+}
+
+fn show(ui: &mut Ui, model: &Model, drafts: &mut Drafts) -> RobotInput {
+    let Drafts {
+        selection,
+        connection,
+    } = drafts;
     let mut input = RobotInput::default();
     switches(ui, model, &mut input.requests);
     ui.separator();
@@ -115,6 +134,8 @@ fn show(ui: &mut Ui, model: &Model, selection: &mut JointSelection) -> RobotInpu
         face(ui, model, &mut input.requests);
     }
     CollapsingHeader::new("Joints and grippers").show(ui, |ui| state(ui, model, selection.joint));
+    let order = real_robot(ui, model.connection, connection);
+    input.requests.extend(order.map(Request::Connection));
     input
 }
 

@@ -1,7 +1,7 @@
 //! The content of the Robot window, and the user's input.
 
 use tabletop_core::{Face, JointId, Robot, RobotLayout};
-use tabletop_user::Keymap;
+use tabletop_user::{Connection, ConnectionOrder, Keymap};
 
 use crate::input::jog::Directions;
 
@@ -16,6 +16,8 @@ pub(super) struct Model<'a> {
     /// True if a script moves the arms.
     pub is_scripted: bool,
     pub keymap: &'a Keymap,
+    /// The real robot.
+    pub connection: &'a Connection,
 }
 
 impl Model<'_> {
@@ -42,7 +44,7 @@ pub(super) struct PressedButtons {
 }
 
 /// A wish of the user to the window.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Request {
     ShowRobot(bool),
     ToggleHeadView,
@@ -52,4 +54,5 @@ pub(super) enum Request {
     /// Bring a joint to an angle in rad, or an opening in units.
     Go(JointId, f64),
     ShowFace(Face),
+    Connection(ConnectionOrder),
 }

@@ -43,7 +43,7 @@ struct Stage {
     robot: Robot,
     is_scripted: bool,
     keymap: Keymap,
-    selection: JointSelection,
+    drafts: Drafts,
     pressed: PressedButtons,
     struck: Vec<i8>,
     requests: Vec<Request>,
@@ -66,8 +66,9 @@ impl Stage {
                 shows_head_view: false,
                 is_scripted: stage.is_scripted,
                 keymap: &stage.keymap,
+                connection: &Connection::None,
             };
-            let input = show(ui, &model, &mut stage.selection);
+            let input = show(ui, &model, &mut stage.drafts);
             stage.requests.extend(input.requests);
             stage.pressed = input.pressed;
             stage.struck.push(of_first_joint(&stage.pressed.struck));
@@ -159,7 +160,7 @@ fn every_joint_can_be_selected() {
         let choices = harness.query_all_by_label(&label);
         choices.last().unwrap().click();
         harness.run();
-        assert_eq!(harness.state().selection.joint, joint);
+        assert_eq!(harness.state().drafts.selection.joint, joint);
         assert_eq!(harness.state().requests, []);
     }
 }
@@ -200,7 +201,10 @@ fn the_slider_sends_the_joint_where_it_is_clicked_and_nothing_otherwise() {
 fn a_wide_open_gripper_is_commanded_to_open_by_its_slider() {
     let joint = JointId::from(RobotJoint::LeftGripper);
     let stage = || Stage {
-        selection: JointSelection { joint, goal: None },
+        drafts: Drafts {
+            selection: JointSelection { joint, goal: None },
+            ..default()
+        },
         ..default()
     };
     let mut harness = stage().harness();
