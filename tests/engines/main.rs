@@ -1,4 +1,4 @@
-//! Scripts that drive the robot, in a real GNU Octave and a real Python.
+//! Scripts that drive the robot, in a real GNU Octave and a real Python; and a real ROS 1 in place of the robot.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 #[path = "../recording/demonstration.rs"]
@@ -6,6 +6,7 @@
 mod demonstration;
 mod examples;
 mod panda;
+mod real_robot;
 mod scripts;
 mod slow_script;
 #[path = "../cli/support.rs"]

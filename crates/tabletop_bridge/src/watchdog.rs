@@ -34,6 +34,9 @@ pub const HOLD: Duration = Duration::from_millis(300);
 /// long. So a joint that stands still is found out if it should turn at 0.3 rad/s or more.
 const FORGETTING: f64 = 1.0;
 
+/// The distance of a joint, in rad, from the angle that it was sent to at which it counts as there.
+const THERE: f64 = 1e-3;
+
 /// The least change of an opening, from 0 to 1, and the least time between two, that a gripper is sent.
 const GRIPPER_STEP: f64 = 0.01;
 const GRIPPER_PERIOD: Duration = Duration::from_millis(50);
@@ -284,7 +287,7 @@ impl Watchdog {
         self.last_tick = Some(now);
         let passed = now.saturating_sub(last);
         if self.state == WatchdogState::Armed {
-            if let Some(reason) = self.fault(now, passed, state, set_at) {
+            if let Some(reason) = self.fault(now, passed, state, target, set_at) {
                 self.stop(reason, now);
             }
         } else if let Some(reason @ (StopReason::EmergencyStop | StopReason::Disabled)) =
@@ -320,6 +323,7 @@ impl Watchdog {
         now: Duration,
         passed: Duration,
         state: &RobotState,
+        target: &RobotTarget,
         set_at: Duration,
     ) -> Option<StopReason> {
         if passed > OLDEST_TARGET {
@@ -328,14 +332,30 @@ impl Watchdog {
         if let Some(reason) = unfit(now, state) {
             return Some(reason);
         }
-        // Arming counts as a target: the robot rests.
+        // A robot that rests may wait for its program.
         let by = now.saturating_sub(set_at.max(self.since));
-        if by > OLDEST_TARGET {
+        if by > OLDEST_TARGET && self.is_moved_by(target) {
             return Some(StopReason::ProgramLate { by });
         }
         self.limbs
             .iter()
             .find_map(|motion| motion.deviation(&self.profile, state))
+    }
+
+    /// True if a target moves a limb that is driven, or brings it to angles where it has not been sent yet.
+    fn is_moved_by(&self, target: &RobotTarget) -> bool {
+        self.limbs.iter().any(|motion| {
+            let name = &self.profile.limbs[motion.limb].name;
+            match target.limbs.get(name) {
+                Some(LimbTarget::Velocities(speeds)) => speeds.iter().any(|speed| *speed != 0.0),
+                Some(LimbTarget::Positions(goals)) => {
+                    let ways = goals.iter().zip(&motion.expected);
+                    ways.into_iter()
+                        .any(|(goal, now)| (goal - now).abs() > THERE)
+                }
+                None => false,
+            }
+        })
     }
 
     fn drive(

@@ -353,6 +353,18 @@ fn a_robot_that_is_stopped_is_sent_nothing_more() {
 }
 
 #[test]
+fn a_robot_that_rests_waits_for_its_program() {
+    let mut rig = Rig::armed(&MIDDLE);
+    rig.run(10, &LimbTarget::Velocities(vec![0.0; 7]));
+    for _ in 0..100 {
+        rig.tick(true);
+    }
+    assert_eq!(*rig.watchdog.state(), WatchdogState::Armed);
+    rig.run(10, &first_joint(0.9));
+    assert_eq!(*rig.watchdog.state(), WatchdogState::Armed);
+}
+
+#[test]
 fn a_stop_while_it_comes_to_rest_ends_the_commands() {
     let (mut rig, reason) = stopped_by(|rig| rig.tick(true));
     assert!(matches!(reason, StopReason::ProgramLate { .. }));

@@ -192,7 +192,8 @@ fn silence_and_a_stuck_arm_stop_it() {
 #[test_with(Rospy)]
 fn a_program_that_falls_silent_stops_it() {
     let mut baxter = MockBaxter::start();
-    let drive = Drive::begin(&baxter.address(), &profile(), &right_arm());
+    let mut drive = Drive::begin(&baxter.address(), &profile(), &right_arm());
+    drive.0.aim(first_joint("right", 0.5)).unwrap();
     drive.until_the_watchdog_stops();
     drive
         .stop_by(|reason| matches!(reason, StopReason::ProgramLate { .. }))
