@@ -12,7 +12,7 @@ use crate::{
     assembly::{IdAllocator, assemble},
     core::{
         RecordingCommand, RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick,
-        StepApp as _, TICKS_PER_SECOND, Table, WriteCommand as _,
+        StepApp as _, TICKS_PER_SECOND, Table, WriteCommand as _, seen_from,
     },
     final_state, headless_app_with,
     script::shut_down,
@@ -198,7 +198,7 @@ fn table_of(scenario: &Scenario, args: &RunArgs) -> Result<Table, Failure> {
         return Ok(Table::default());
     };
     let folder = scenario.path.parent().unwrap_or(Path::new(""));
-    let scene = args.read_faultless(&folder.join(file));
+    let scene = args.read_faultless(&seen_from(folder, file));
     Ok(scene.map_err(Failure::input)?.table)
 }
 

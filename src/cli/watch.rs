@@ -9,6 +9,7 @@ use std::{
 use crate::{
     assembly::IdAllocator,
     camera::Camera,
+    dataset::record_watched,
     recorder::{RecorderError, RecordingReader, read_picture},
     shipped::read_faultless_task,
     storage::Storage,
@@ -28,7 +29,9 @@ use super::{
     cut_off::say_if_cut_off,
     explain::{furniture, print, reported},
     head_camera::taking,
+    import::failed,
     range::NumberRange,
+    recorded::say_moved_aside,
     terminal::{say, show_warnings},
 };
 
@@ -50,6 +53,9 @@ pub(super) struct WatchArgs {
     /// Find where the camera is by the edges of the table in the first picture, if it is some centimetres from where it is thought to be
     #[arg(long)]
     calibrate: bool,
+    /// Write what was understood as a recording, for the window's timeline and everything else that reads recordings
+    #[arg(long, value_name = "OUT")]
+    record: Option<PathBuf>,
     /// Print everything that was understood as JSON
     #[arg(long)]
     json: bool,
@@ -91,7 +97,16 @@ pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
         true => PictureRoll::of_recording(&args.folder, setup)?,
         false => PictureRoll::of_pictures(&args.folder, pictures, setup, args.rate)?,
     };
+    let frames = roll.frames.clone();
     let watched = roll.watch(args.calibrate)?;
+    if let Some(out) = &args.record {
+        let import = record_watched(out, &watched.demonstration, &frames).map_err(failed)?;
+        import
+            .remarks
+            .iter()
+            .for_each(|remark| say(format_args!("tabletop: {remark}")));
+        say_moved_aside(&import.report);
+    }
     let mut task = Task::of(&watched.demonstration);
     task.phrase(&Requirements::default());
     if args.json {

@@ -49,6 +49,25 @@ fn poses_are_seen_to_a_millimetre_on_average() {
 }
 
 #[test]
+fn what_was_watched_is_a_recording() {
+    let demo = recorded("stack_three", "record");
+    let out = place("watch_recorded");
+    let out = out.to_str().unwrap();
+    let sentences = seen(&[&demo, "--record", out]);
+    assert_eq!(stdout(&tabletop(&["explain", out])), sentences);
+    let pictures = |folder: &str| {
+        let segments = fs::read_dir(folder).unwrap().map(Result::unwrap);
+        let segments = segments.filter(|entry| entry.path().is_dir());
+        segments
+            .map(|segment| fs::read_dir(segment.path()).unwrap().count())
+            .sum::<usize>()
+    };
+    assert_eq!(pictures(out), pictures(&demo));
+    let session = fs::read_to_string(format!("{out}/session.jsonl")).unwrap();
+    assert!(session.contains("\"from\":\"pictures\""));
+}
+
+#[test]
 fn a_folder_of_pictures_is_watched_with_a_task_file() {
     let demo = recorded("stack_three", "folder");
     let pictures = place("watch_pictures");

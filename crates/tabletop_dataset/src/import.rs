@@ -6,8 +6,10 @@ mod motion;
 mod objects;
 mod pictures;
 mod segments;
+mod watched;
 
 pub use act_source::ActSource;
+pub use watched::record_watched;
 
 use std::path::Path;
 
@@ -15,8 +17,9 @@ use serde_json::json;
 use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_core::{Actor, SceneCommand, SceneSpec, SimTick};
 use tabletop_recorder::{
-    IMPORTED, OriginalRecording, RecorderError, RecordingReport, RecordingWriter, Session,
-    SessionCommand, SessionHeader, SessionObject, SessionScene, TICKS_PER_FRAME, write_recording,
+    IMPORTED, OriginalRecording, RecordedSegment, RecorderError, RecordingReport, RecordingWriter,
+    Session, SessionCommand, SessionHeader, SessionObject, SessionScene, TICKS_PER_FRAME,
+    write_recording,
 };
 use tabletop_task::{Demonstration, Furniture};
 
@@ -71,31 +74,14 @@ pub fn import_recording(
     if shown.objects.is_empty() {
         return Err(DatasetError::unfit(source, "it has no object with a pose"));
     }
-    let motions = Motions::of(&original.segments, &shown);
-    let acts = acts_of(&original);
-    let segments = segments_of(&original.segments, &shown, acts);
-    let table = setup.map_or(shown.table, |setup| setup.table);
-    let (pictures, missing) = PicturePlan::of(&original.segments, &motions);
-    remarks.extend(missing);
-
-    let session = session(&shown, &motions, setup, acts, &pictures);
-    let last_frame = motions.last_frame();
-    let last_tick = SimTick(last_frame * TICKS_PER_FRAME);
-    let report = write_recording(out, &session, last_tick, |writer| {
-        write_segments(writer, &segments, &shown)?;
-        motions.write(writer, last_tick)?;
-        pictures.write(writer, &starts(&segments), &motions, &shown, &table)
-    })?;
-    Ok(Import {
-        segments: segments.len(),
-        last_frame,
-        objects: shown.objects.len(),
-        recorded_pictures: pictures.recorded(),
-        drawn_pictures: pictures.drawn(),
-        acts,
-        remarks,
-        report,
-    })
+    let imported = Imported {
+        acts: acts_of(&original),
+        segments: original.segments,
+        shown,
+        setup,
+        from: "original program",
+    };
+    imported.write(out, remarks)
 }
 
 const NO_ORIGINAL: &str = "it is no recording of the original program: expected files 0.txt, 1.txt, … of events, and no session.jsonl";
@@ -105,6 +91,88 @@ fn furniture(setup: &SceneSpec) -> Furniture {
     Furniture {
         objects: assembly.objects,
         joints: assembly.joints,
+    }
+}
+
+/// What is written as a recording whose commands are not known.
+struct Imported<'s> {
+    segments: Vec<RecordedSegment>,
+    shown: Demonstration,
+    setup: Option<&'s SceneSpec>,
+    acts: ActSource,
+    /// Where it comes from, for the header.
+    from: &'static str,
+}
+
+impl Imported<'_> {
+    fn write(&self, out: &Path, mut remarks: Vec<String>) -> Result<Import, DatasetError> {
+        let shown = &self.shown;
+        let motions = Motions::of(&self.segments, shown);
+        let segments = segments_of(&self.segments, shown, self.acts);
+        let table = self.setup.map_or(shown.table, |setup| setup.table);
+        let (pictures, missing) = PicturePlan::of(&self.segments, &motions);
+        remarks.extend(missing);
+        let session = self.session(&motions, &pictures);
+        let last_frame = motions.last_frame();
+        let last_tick = SimTick(last_frame * TICKS_PER_FRAME);
+        let report = write_recording(out, &session, last_tick, |writer| {
+            write_segments(writer, &segments, shown)?;
+            motions.write(writer, last_tick)?;
+            pictures.write(writer, &starts(&segments), &motions, shown, &table)
+        })?;
+        Ok(Import {
+            segments: segments.len(),
+            last_frame,
+            objects: shown.objects.len(),
+            recorded_pictures: pictures.recorded(),
+            drawn_pictures: pictures.drawn(),
+            acts: self.acts,
+            remarks,
+            report,
+        })
+    }
+
+    /// The session: the scene, set before its first tick. It begins in no tick, since its commands are not known.
+    fn session(&self, motions: &Motions, pictures: &PicturePlan) -> Session {
+        let shown = &self.shown;
+        let mut header = SessionHeader::new(0);
+        header.earlier_commands = 1;
+        header.camera = Some(pictures.camera());
+        header.settings.insert(
+            IMPORTED.into(),
+            json!({
+                "from": self.from,
+                "acts": self.acts.name(),
+                "pictures": { "recorded": pictures.recorded(), "drawn": pictures.drawn() },
+            }),
+        );
+        let scene = beginning_scene(shown, motions, self.setup);
+        let objects = motions.at_beginning(shown);
+        let objects = objects.map(|(object, pose)| {
+            let mut spec = object.spec.clone();
+            spec.pose = pose;
+            SessionObject { pose, spec }
+        });
+        let objects: Vec<_> = objects.collect();
+        let is_there = |id: &String| objects.iter().any(|object| object.spec.id == *id);
+        let joints = shown.joints.iter();
+        let joints = joints.filter(|joint| joint.objects.iter().all(is_there));
+        Session {
+            scene: SessionScene {
+                table: Some(scene.table),
+                joints: joints.cloned().collect(),
+                objects,
+            },
+            header,
+            earlier: vec![SessionCommand {
+                tick: 0,
+                actor: Actor::App,
+                command: SceneCommand::Set(Box::new(scene)).into(),
+                at_once: false,
+            }],
+            commands: Vec::new(),
+            segments: Vec::new(),
+        }
     }
 }
 
@@ -121,54 +189,6 @@ fn acts_of(original: &OriginalRecording) -> ActSource {
 
 fn starts(segments: &[ImportedSegment]) -> Vec<SimTick> {
     segments.iter().map(|segment| segment.start).collect()
-}
-
-/// The session of an imported recording: the scene, set before its first tick. It begins in no tick, since its commands are not known.
-fn session(
-    shown: &Demonstration,
-    motions: &Motions,
-    setup: Option<&SceneSpec>,
-    acts: ActSource,
-    pictures: &PicturePlan,
-) -> Session {
-    let mut header = SessionHeader::new(0);
-    header.earlier_commands = 1;
-    header.camera = Some(pictures.camera());
-    header.settings.insert(
-        IMPORTED.into(),
-        json!({
-            "from": "original program",
-            "acts": acts.name(),
-            "pictures": { "recorded": pictures.recorded(), "drawn": pictures.drawn() },
-        }),
-    );
-    let scene = beginning_scene(shown, motions, setup);
-    let objects = motions.at_beginning(shown);
-    let objects = objects.map(|(object, pose)| {
-        let mut spec = object.spec.clone();
-        spec.pose = pose;
-        SessionObject { pose, spec }
-    });
-    let objects: Vec<_> = objects.collect();
-    let is_there = |id: &String| objects.iter().any(|object| object.spec.id == *id);
-    let joints = shown.joints.iter();
-    let joints = joints.filter(|joint| joint.objects.iter().all(is_there));
-    Session {
-        scene: SessionScene {
-            table: Some(scene.table),
-            joints: joints.cloned().collect(),
-            objects,
-        },
-        header,
-        earlier: vec![SessionCommand {
-            tick: 0,
-            actor: Actor::App,
-            command: SceneCommand::Set(Box::new(scene)).into(),
-            at_once: false,
-        }],
-        commands: Vec::new(),
-        segments: Vec::new(),
-    }
 }
 
 fn write_segments(

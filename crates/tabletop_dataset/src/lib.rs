@@ -21,7 +21,7 @@ pub use check::{CheckOptions, Finding, check};
 pub use composition::{DatasetPart, divide, merge};
 pub use error::DatasetError;
 pub use folder::{DatasetContent, DatasetFolder};
-pub use import::{ActSource, Import, import_recording};
+pub use import::{ActSource, Import, import_recording, record_watched};
 pub use repair::{Repair, repair};
 pub use statistics::{NumberStatistics, statistics};
 pub use summary::{DatasetSummary, summarize};
