@@ -67,6 +67,8 @@ struct PictureRoll {
     camera: HeadCamera,
     objects: Vec<ObjectSpec>,
     joints: Vec<JointSpec>,
+    /// True if the first picture alone tells the shapes of the objects.
+    is_described: bool,
     /// The pictures, each with its tick, from 0.
     frames: Vec<(SimTick, PathBuf)>,
     /// The true poses of the objects, by id, of each picture; empty if nobody knows them.
@@ -174,6 +176,7 @@ impl PictureRoll {
             camera,
             objects,
             joints,
+            is_described: false,
             frames: frames.collect(),
             truth,
         })
@@ -190,6 +193,7 @@ impl PictureRoll {
         let first = first.transpose().map_err(Failure::input)?;
         let first = first.unwrap_or_default();
         let camera = taking(&HeadCamera::default(), &first);
+        let is_described = setup.is_none();
         let (table, objects, joints) = match setup {
             Some(setup) => setup,
             None => {
@@ -212,6 +216,7 @@ impl PictureRoll {
             camera,
             objects,
             joints,
+            is_described,
             frames: frames.collect(),
             truth: Vec::new(),
         })
@@ -228,6 +233,9 @@ impl PictureRoll {
             camera = calibrated(&picture, &camera, &self.table);
         }
         let mut watcher = Watcher::new(self.objects, self.joints, self.table, camera);
+        if self.is_described {
+            watcher = watcher.of_described();
+        }
         let mut errors = Vec::new();
         for (number, (tick, path)) in self.frames.iter().enumerate() {
             let picture = read_picture(path).map_err(Failure::input)?;

@@ -354,3 +354,17 @@ fn objects_that_stand_on_each_other_are_no_endless_tower() {
         );
     }
 }
+
+#[test]
+fn three_robots_imitate_one_demonstration() {
+    let demo = recorded("stack_small");
+    for robot in ["baxter", "panda", "so101"] {
+        let layout = format!("assets/{robot}/robot.ron");
+        let arguments = ["imitate", &demo, "--robot", &layout, "--trials", "5"];
+        let output = stdout(&tabletop(&arguments));
+        assert!(
+            output.contains("done              5 of 5"),
+            "{robot}: {output}"
+        );
+    }
+}

@@ -64,6 +64,7 @@ fn tasks_are_demonstrated() {
         "chest",
         "letter_m",
         "red_on_blue",
+        "stack_small",
     ] {
         passes(&format!("{name}.ron"));
     }
@@ -206,6 +207,7 @@ fn every_shipped_scenario_has_its_test() {
         "robot_stack.ron",
         "robot_valve.ron",
         "shears.ron",
+        "stack_small.ron",
         "stack_three.ron",
         "stack_two_blocks.ron",
         "stand_up.ron",

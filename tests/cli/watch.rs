@@ -178,3 +178,20 @@ fn a_camera_that_was_bumped_is_found() {
         stderr(&output)
     );
 }
+
+/// Pegs that look alike and stand in any direction, one of them hidden at first; and blocks that fall a little when they are let go.
+#[test]
+fn what_was_hidden_or_let_go_is_seen_anew() {
+    for (scenario, seeds) in [("hanoi", &["1", "6"][..]), ("wall", &["4", "8"])] {
+        let demo = recorded(scenario, "anew");
+        for seed in seeds {
+            let arguments = ["imitate", &demo, "--eyes", "--watch", "--seed", seed];
+            let output = tabletop(&arguments);
+            assert!(
+                stdout(&output).starts_with("Done"),
+                "{scenario} {seed}: {}",
+                stdout(&output)
+            );
+        }
+    }
+}

@@ -10,7 +10,7 @@ use rospy::MockBaxter;
 use tabletop::core::{RobotLayout, TICK_SECONDS};
 use tabletop_harness::test_with;
 
-use crate::support::{place, record_shipped, scenario, shipped, stderr, stdout, tabletop};
+use crate::support::{place, record_shipped, shipped, stderr, stdout, tabletop};
 
 /// A Baxter whose arms are where those of the simulated one are at first.
 fn baxter() -> MockBaxter {
@@ -49,7 +49,14 @@ fn distance(one: &[f64], other: &[f64]) -> f64 {
 fn the_example_pair_moves_a_real_robot_along_the_same_path() {
     /// In rad/s, as exampleInit.m says.
     const SPEED: f64 = 0.5;
-    let pair = scenario("real_pair.ron", "Start, Wait(6.0)");
+    // As long as nothing is in the way, of which a real arm keeps clear: on a table that is too small to be.
+    let scene = place("real_pair.xml");
+    let text =
+        "<tabletop xmlns=\"http://synapse.cs.umd.edu/tabletop-xml\" xspan=\"1\" yspan=\"1\"/>";
+    fs::write(&scene, text).unwrap();
+    let pair = place("real_pair.ron");
+    let text = "(setup: \"real_pair.xml\", steps: [Start, Wait(2.0)])";
+    fs::write(&pair, text).unwrap();
     let record = |name: &str, options: &[&str]| {
         let folder = place(name);
         let to = folder.to_str().unwrap();

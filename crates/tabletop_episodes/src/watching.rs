@@ -7,8 +7,10 @@ use tabletop_geometry::Pose;
 use tabletop_task::{Demonstration, Track, angle_between};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, with_guides};
 
-/// The largest displacement, in units, and the largest turn, in rad, of an object between two pictures that is an error of the eyes and no motion.
+/// The largest displacement, in units, and the largest turn, in rad, of an object between two pictures that is an error of the eyes and no motion: if
+/// its shape is known, and if it was only described by what a picture shows of it.
 const STILL: (f32, f32) = (0.02, 0.03);
+const STILL_IF_DESCRIBED: (f32, f32) = (0.1, 0.06);
 
 /// A watcher of a demonstration: knows the shapes and colours of the objects, and not where they are.
 pub struct Watcher {
@@ -20,6 +22,8 @@ pub struct Watcher {
     eyes: Eyes,
     /// The tick of the last picture.
     last: Option<SimTick>,
+    /// The largest motion between two pictures that is none.
+    still: (f32, f32),
 }
 
 /// An object that is watched.
@@ -55,7 +59,15 @@ impl Watcher {
             table,
             joints,
             last: None,
+            still: STILL,
         }
+    }
+
+    /// The same watcher of objects whose shapes are only described by what a picture shows of them, and so not exact.
+    #[must_use]
+    pub const fn of_described(mut self) -> Self {
+        self.still = STILL_IF_DESCRIBED;
+        self
     }
 
     /// Watches the next picture, of this tick of the demonstration. Ticks must ascend.
@@ -79,7 +91,7 @@ impl Watcher {
                 ..
             } = seen
             {
-                object.see(tick, pose);
+                object.see(tick, pose, self.still);
             }
         }
     }
@@ -119,14 +131,14 @@ fn known_objects(
 }
 
 impl Watched {
-    fn see(&mut self, tick: SimTick, pose: Pose) {
+    fn see(&mut self, tick: SimTick, pose: Pose, still: (f32, f32)) {
         let pose = match self.pose {
             Some(before) => self.known.turned_least(pose, before.rotation),
             None => pose,
         };
         let is_still = |before: Pose| {
-            before.location.distance(pose.location) < STILL.0
-                && angle_between(before.rotation, pose.rotation) < STILL.1
+            before.location.distance(pose.location) < still.0
+                && angle_between(before.rotation, pose.rotation) < still.1
         };
         if !self.pose.is_some_and(is_still) {
             self.track.push(tick, pose);

@@ -127,6 +127,12 @@ impl LimbBody {
 }
 
 impl RobotBody {
+    /// The size of its largest hand, as a part of that for which the distances of this crate are meant: one that opens by 2 units.
+    pub(crate) fn hand_size(&self) -> f32 {
+        let openings = self.limbs.iter().map(|limb| limb.widest);
+        openings.fold(0.0, f32::max) / 2.0
+    }
+
     /// The robot of this layout and model, at this table.
     ///
     /// # Errors

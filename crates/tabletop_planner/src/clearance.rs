@@ -78,6 +78,11 @@ const LEAN: f32 = 0.3;
 const LINKS: f32 = 0.05;
 
 impl<'a> Clearance<'a> {
+    /// The [size of the robot's hand](RobotBody::hand_size).
+    pub fn hand_size(&self) -> f32 {
+        self.body.hand_size()
+    }
+
     /// A limb among all that is seen, except these objects.
     pub fn new(body: &'a RobotBody, sight: &Sight, limb: usize, without: &[&str]) -> Self {
         let angles: Vec<_> = sight.limbs.iter().map(|limb| limb.angles).collect();

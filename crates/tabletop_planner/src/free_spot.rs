@@ -9,14 +9,17 @@ use crate::{
     sight::{Solids as _, heights},
 };
 
-/// How far from others something is put, so that fingers reach it, in units: rather than less.
+/// How far from others something is put, so that fingers reach it, in units and hand sizes: rather than less.
 const ROOMS: [f32; 2] = [0.9, 0.5];
 /// How far from the table's edges, in units.
 const EDGE: f32 = 0.3;
 /// Largest number of places that are found.
 const MOST: usize = 10;
-/// Distance between the candidate places, in units.
+/// Distance between the candidate places, in units and hand sizes.
 const GRID: f32 = 0.5;
+/// Heights, in units and hand sizes, at which an end effector takes and carries what lies there.
+const TAKEN: f32 = 0.8;
+const CARRIED: f32 = 2.5;
 
 /// Places where an object can be put in this orientation, the nearest to `near` first. `kept` are solids that will be there later.
 pub(crate) fn free_spots(
@@ -47,9 +50,11 @@ pub(crate) fn free_spots(
         .flat_map(|(_, other)| other.solids())
         .chain(kept.iter().cloned())
         .collect();
+    let hand = body.hand_size();
     let steps = |from: f32, to: f32| {
-        let count = ((to - from) / GRID).max(0.0) as u16;
-        (0..=count).map(move |i| from + GRID * f32::from(i))
+        let grid = GRID * hand;
+        let count = ((to - from) / grid).max(0.0) as u16;
+        (0..=count).map(move |i| from + grid * f32::from(i))
     };
     let mut spots: Vec<_> = steps(left, right)
         .flat_map(|x| steps(front, back).map(move |y| Vec3::new(x, y, -lowest)))
@@ -67,7 +72,7 @@ pub(crate) fn free_spots(
     let is_reached = |spot: &Vec3| {
         limbs.iter().all(|&limb| {
             let home = body.limbs[limb].home;
-            let tops = [0.8_f32.max(highest - lowest), 2.5];
+            let tops = [(TAKEN * hand).max(highest - lowest), CARRIED * hand];
             tops.into_iter()
                 .all(|z| body.reach(limb, Pose::at(spot.with_z(z)), &home).is_some())
         })
@@ -77,7 +82,7 @@ pub(crate) fn free_spots(
         let reached = free.filter(|spot| is_reached(spot)).take(MOST);
         reached.map(|spot| Pose::new(*spot, rotation)).collect()
     };
-    let all = ROOMS.into_iter().map(found);
+    let all = ROOMS.into_iter().map(|room| found(room * hand));
     all.into_iter()
         .find(|spots| !spots.is_empty())
         .unwrap_or_default()

@@ -33,8 +33,21 @@ const TRIES: u32 = 3000;
 const EDGE: f32 = 0.05;
 /// Height from which on things are taken from beside, in units: no arm has room above them.
 const HIGH: f32 = 4.0;
-/// Height of a hold above a point that is to be reached, in units.
+/// Room above the holds in which things are carried, in units: over a tower of all of them, or as high as this.
+const MOST_ROOM: f32 = 2.5;
+/// From what is carried to the top of that tower, in units.
+const CLEAR: f32 = 0.5;
+/// Height of a hold above a point that is to be reached, in units and hand sizes.
 const HOLD: f32 = 0.3;
+
+/// The room above these pieces, in units, in which a robot carries them.
+pub fn carrying_room(pieces: &[Piece]) -> f32 {
+    let heights = pieces.iter().map(|piece| {
+        let tops = piece.solids.iter().map(|solid| solid.heights()[1]);
+        tops.fold(0.0, f32::max)
+    });
+    (heights.sum::<f32>() + CLEAR).min(MOST_ROOM)
+}
 
 /// Motions that bring all pieces to random places, turned by random angles. `is_reached` must hold of each group of points that has to be reached.
 /// Pieces that stand on, in or around others move with them. Nothing comes near the solids `kept` free. `None` if there is
@@ -115,21 +128,21 @@ impl RobotBody {
         });
         let best = all.iter().min_by(|a, b| a.off.total_cmp(&b.off));
         best.map_or(Vec3::ZERO, |best| {
-            let hold = pose * best.end_effector.location - Vec3::Z * HOLD;
+            let hold = pose * best.end_effector.location - Vec3::Z * HOLD * self.hand_size();
             pose.inverse() * hold
         })
     }
 
-    /// True if one limb reaches all points, and the space above them, from above, with its fingers turned in any direction; or, if they are too high
-    /// for that, from the same side.
-    pub fn reaches(&self, points: &[Vec3]) -> bool {
+    /// True if one limb reaches all points, and so much room above them, in units, from above, with its fingers turned in any direction; or, if they are
+    /// too high for that, from the same side.
+    pub fn reaches(&self, points: &[Vec3], room: f32) -> bool {
         let are_high = points.iter().all(|point| point.z > HIGH);
         let mut limbs = 0..self.limbs.len();
         limbs.any(|limb| match are_high {
             true => self.limb_reaches_from_beside(limb, points),
             false => {
                 let mut points = points.iter();
-                points.all(|&point| self.limb_reaches_from_above(limb, point))
+                points.all(|&point| self.limb_reaches_from_above(limb, point, room))
             }
         })
     }
@@ -144,22 +157,22 @@ impl RobotBody {
         });
         turns.any(|turn| {
             points.iter().all(|&point| {
-                let pose = Pose::new(point + Vec3::Z * HOLD, turn);
+                let pose = Pose::new(point + Vec3::Z * HOLD * self.hand_size(), turn);
                 self.reach(limb, pose, &home).is_some()
             })
         })
     }
 
-    fn limb_reaches_from_above(&self, limb: usize, point: Vec3) -> bool {
+    fn limb_reaches_from_above(&self, limb: usize, point: Vec3, room: f32) -> bool {
         let home = self.limbs[limb].home;
         let there = |z: f32, turn: f32| {
             let pose = Pose::new(point.with_z(z), Quat::from_rotation_z(turn));
             self.reach(limb, pose, &home).is_some()
         };
-        let low = point.z + HOLD;
+        let low = point.z + HOLD * self.hand_size();
         [0.0, FRAC_PI_4, FRAC_PI_2, -FRAC_PI_4]
             .into_iter()
-            .all(|turn| there(low, turn) && there(low + 2.5, turn))
+            .all(|turn| there(low, turn) && there(low + room, turn))
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
     rrt::connect,
 };
 
-/// Heights at which an arm crosses the table, in units.
+/// Heights at which an arm crosses the table, in units and hand sizes; and those in units, for a small robot among large things.
 const TRAVERSES: [f32; 4] = [2.6, 3.4, 4.2, 5.0];
 
 /// The search for a path.
@@ -49,7 +49,10 @@ fn simple(clearance: &Clearance, from: &Angles, to: &Angles, margins: Margins) -
         return Some(direct);
     }
     let ends = [from, to].map(|angles| clearance.end_effector(angles));
-    for height in TRAVERSES {
+    let hand = clearance.hand_size();
+    let scaled = TRAVERSES.map(|height| height * hand);
+    let unscaled = TRAVERSES.into_iter().filter(|_| hand < 1.0);
+    for height in scaled.into_iter().chain(unscaled) {
         let raised = |angles: &Angles, end: &Pose| match end.location.z > height - 0.05 {
             true => Some(Path::new()),
             false => lift(clearance, angles, height - end.location.z),

@@ -12,7 +12,6 @@ use crate::{
     refine::{Refinement, TRACKING},
     residual::{OUTLIER, Residual, TriedFit, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
-    support,
 };
 
 /// The part of what an object should explain that it has to explain at least.
@@ -174,12 +173,12 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         })
     }
 
-    /// Finds all objects, if it is known of none where it was before; else follows those.
-    pub fn begin(&mut self, before: &[Option<StandingPose>]) {
+    /// Finds all objects, if it is known of none where it was before; else follows those, and looks closely at those that were let go since.
+    pub fn begin(&mut self, before: &[Option<StandingPose>], let_go: &[bool]) {
         if before.iter().all(Option::is_none) {
             self.arrange(&mut || 1.0);
         } else {
-            self.follow(before);
+            self.follow(before, let_go);
         }
     }
 
@@ -197,7 +196,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
     }
 
     /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere.
-    fn follow(&mut self, before: &[Option<StandingPose>]) {
+    fn follow(&mut self, before: &[Option<StandingPose>], let_go: &[bool]) {
         self.allowance = STILL_SUPPORTED;
         for (i, placement) in before.iter().enumerate() {
             self.place(i, *placement);
@@ -208,7 +207,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             (0..self.objects.len()).partition(|&i| self.objects[i].guide().is_some());
         for &i in [&guided, &free, &guided].into_iter().flatten() {
             let fit = self.fit(i);
-            if fit.misfit > good * fit.pixels as f32 || self.hovers(i) {
+            if let_go[i] || fit.misfit > good * fit.pixels as f32 {
                 self.settle(i, &TRACKING, true);
             }
         }
@@ -221,18 +220,6 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         if self.placements.contains(&None) {
             self.arrange(&mut || 1.0);
         }
-    }
-
-    /// True if an object that no joint holds stands on nothing: it may have been let go since.
-    fn hovers(&self, object: usize) -> bool {
-        let known = &self.objects[object];
-        let Some(placement) = self.placements[object].filter(|_| known.guide().is_none()) else {
-            return false;
-        };
-        let others = (self.objects.iter().zip(&self.placements).enumerate())
-            .filter(|(other, _)| *other != object)
-            .filter_map(|(_, (other, placement))| Some((other, placement.as_ref()?)));
-        !support::stands(known, &placement, others)
     }
 
     /// Finds all objects without a placement, and settles all.

@@ -22,6 +22,8 @@ pub struct Eyes {
     camera: Camera,
     table: Table,
     poses: Vec<Option<Pose>>,
+    /// Whether each object was let go since the last picture.
+    let_go: Vec<bool>,
     is_light_unknown: bool,
     /// The memory of the last picture's layers.
     layers: Option<PictureLayers>,
@@ -58,7 +60,7 @@ pub struct ObjectPercept {
     pub deviation: PoseDeviation,
     /// How much of it is seen.
     pub visibility: Visibility,
-    /// False if another pose would explain the picture as well, or none explains it well.
+    /// False if another pose would explain the picture as well, none explains it well, or a good part of it is beside the picture.
     pub is_sure: bool,
 }
 
@@ -99,6 +101,7 @@ impl Eyes {
     pub fn new(objects: Vec<KnownObject>, camera: Camera, table: Table) -> Self {
         Self {
             poses: vec![None; objects.len()],
+            let_go: vec![false; objects.len()],
             objects,
             camera,
             table,
@@ -123,6 +126,13 @@ impl Eyes {
     pub fn remember(&mut self, poses: impl IntoIterator<Item = Option<Pose>>) {
         for (own, pose) in self.poses.iter_mut().zip(poses) {
             *own = pose;
+        }
+    }
+
+    /// Lets objects be let go before the next picture: they may have fallen from where they are remembered, however little.
+    pub fn let_go(&mut self, objects: impl IntoIterator<Item = bool>) {
+        for (own, is_let_go) in self.let_go.iter_mut().zip(objects) {
+            *own = is_let_go;
         }
     }
 
@@ -173,7 +183,7 @@ impl Eyes {
         };
         let residual = Residual::new(picture, layers, self.camera);
         let mut arrangement = ObjectArrangement::empty(&self.objects, residual);
-        arrangement.begin(&before);
+        arrangement.begin(&before, &self.let_go);
         if self.is_light_unknown {
             for _ in 0..RELIGHTINGS {
                 let mut scene = ground.clone();
@@ -203,6 +213,7 @@ impl Eyes {
         });
         let noise = arrangement.noise.sqrt();
         self.layers = Some(arrangement.residual.into_layers());
+        self.let_go.fill(false);
         for (own, seen) in self.poses.iter_mut().zip(&objects) {
             *own = seen.pose;
         }
@@ -286,6 +297,7 @@ fn percept(arrangement: &mut ObjectArrangement, object: usize) -> ObjectPercept 
     let unexplained = fit.misfit / (3 * fit.pixels.max(1)) as f32;
     let variance = arrangement.noise.max(ROUNDING).max(unexplained);
     let ray = arrangement.ray_to(placement.location);
+    let is_cut_off = known.is_cut_off(known.pose(&placement), &arrangement.residual.camera);
     let stance = known.stance(&placement);
     let [x, y, z, yaw] = deviations(&equations, variance, ray, stance.radius);
     ObjectPercept {
@@ -302,6 +314,6 @@ fn percept(arrangement: &mut ObjectArrangement, object: usize) -> ObjectPercept 
             visible if visible > HIDDEN => Visibility::PartlyHidden,
             _ => Visibility::Hidden,
         },
-        is_sure: !is_bad && visible > SURE_VISIBLE,
+        is_sure: !is_bad && visible > SURE_VISIBLE && !is_cut_off,
     }
 }

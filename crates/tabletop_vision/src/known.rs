@@ -2,8 +2,8 @@
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-use bevy::math::{Quat, Vec3, Vec3Swizzles as _};
-use tabletop_camera::DrawnSolid;
+use bevy::math::{Quat, Vec2, Vec3, Vec3Swizzles as _};
+use tabletop_camera::{Camera, DrawnSolid};
 use tabletop_core::{JointSpec, ObjectSpec, Shape};
 use tabletop_geometry::{Bounds, PlacedSolid, Pose, Primitive, Rgb, Solid, turn_about};
 
@@ -164,6 +164,27 @@ impl KnownObject {
         let symmetry = self.stance(&self.placement(pose)).symmetry;
         let turn = turn_about(Vec3::Z, yaw - symmetry.reduced(yaw));
         Pose::new(pose.location, (turn * pose.rotation).normalize())
+    }
+
+    /// True if a good part of it, at this pose, is beside the picture of a camera.
+    pub fn is_cut_off(&self, pose: Pose, camera: &Camera) -> bool {
+        /// The part of the points around it that have to be in the picture.
+        const INSIDE: f32 = 0.75;
+        let placement = self.placement(pose);
+        let stance = self.stance(&placement);
+        let size = Vec2::new(camera.width as f32, camera.height as f32);
+        let sides = (0..8).map(|side| turn_about(Vec3::Z, side as f32 * TAU / 8.0) * Vec3::X);
+        let points = sides.flat_map(|side| {
+            [stance.low, stance.high]
+                .map(|z| placement.location + stance.radius * side + z * Vec3::Z)
+        });
+        let points: Vec<_> = points.collect();
+        let is_inside = |point: &Vec3| {
+            let pixel = camera.pixel_of(*point);
+            pixel.is_some_and(|pixel| pixel.cmpge(Vec2::ZERO).all() && pixel.cmple(size).all())
+        };
+        let inside = points.iter().filter(|point| is_inside(point)).count();
+        (inside as f32) < INSIDE * points.len() as f32
     }
 
     pub(crate) const fn is_fixed(&self) -> bool {

@@ -15,7 +15,7 @@ use super::{ActSource, Import, Imported};
 use crate::error::DatasetError;
 
 /// Writes a demonstration that was understood from pictures as a recording: its objects where they were seen, the acts of a hand that explain their
-/// motions, and the pictures of these ticks. Of pictures that come faster than frames, those of whole frames are kept.
+/// motions, and the pictures of these ticks. Of pictures that come faster than frames, the last one of each is kept.
 ///
 /// # Errors
 /// It has no object, or the recording cannot be written.
@@ -27,13 +27,15 @@ pub fn record_watched(
     if shown.objects.is_empty() {
         return Err(DatasetError::unfit(out, "no object was seen"));
     }
-    let frames = pictures
-        .iter()
-        .filter(|(tick, _)| tick.0.is_multiple_of(TICKS_PER_FRAME));
-    let frames = frames.map(|(tick, picture)| RecordedFrame {
-        number: tick.0 / TICKS_PER_FRAME,
-        tick: *tick,
-        picture: picture.clone(),
+    let numbered = pictures.iter().map(|(tick, picture)| {
+        let number = tick.0.div_ceil(TICKS_PER_FRAME);
+        (number, picture.clone())
+    });
+    let frames: BTreeMap<_, _> = numbered.collect();
+    let frames = frames.into_iter().map(|(number, picture)| RecordedFrame {
+        number,
+        tick: SimTick(number * TICKS_PER_FRAME),
+        picture,
         hand_pictures: BTreeMap::new(),
     });
     let segment = RecordedSegment {

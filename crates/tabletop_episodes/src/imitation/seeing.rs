@@ -1,6 +1,6 @@
 //! The stage of a robot that is told no pose of an object: it sees them through its head camera.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid};
@@ -39,6 +39,8 @@ pub struct SeeingStage<'a> {
     belief: Sight,
     /// The object in each gripper, and its pose in the frame of the end effector.
     held: Vec<Option<(String, Pose)>>,
+    /// The objects that were let go and not seen since: they have fallen from where they were held.
+    let_go: BTreeSet<String>,
 }
 
 /// Does a task with the objects that the robot sees. It counts as done only if it is done in the world as it is.
@@ -101,6 +103,7 @@ impl<'a> SeeingStage<'a> {
         let mut stage = Self {
             known: known.collect(),
             held: vec![None; belief.limbs.len()],
+            let_go: BTreeSet::new(),
             app,
             body,
             observer,
@@ -143,14 +146,13 @@ impl<'a> SeeingStage<'a> {
             let believed = self.belief.objects.get(name);
             believed.map(|it| it.pose)
         }));
+        eyes.let_go(free.iter().map(|(name, _)| self.let_go.contains(name)));
         let mut percept = eyes.look(&look.picture, &scenery);
-        if self.belief.objects.is_empty() {
-            // Which of several objects that look the same is which, no picture tells.
-            let truth = &self.observer.sight().objects;
-            let places = free.iter().map(|(id, _)| Some(truth.get(id)?.pose));
-            let places: Vec<_> = places.collect();
-            eyes.name_by_place(&places, &mut percept);
-        }
+        // Which of several objects that look the same is which, no picture tells, unless it was seen before.
+        let known = [&self.belief, self.observer.sight()];
+        let place = |id: &String| known.iter().find_map(|sight| sight.objects.get(id));
+        let places = free.iter().map(|(id, _)| Some(place(id)?.pose));
+        eyes.name_by_place(&places.collect::<Vec<_>>(), &mut percept);
         let mut unseen = Vec::new();
         for ((name, known), seen) in free.iter().zip(percept.objects) {
             if sought.is_some_and(|sought| !sought.contains(name)) {
@@ -169,19 +171,18 @@ impl<'a> SeeingStage<'a> {
         unseen
     }
 
-    /// True if an object was never seen, or its place is not in the picture of the head that looks straight ahead.
+    /// True if an object was never seen, or a good part of its place is not in the picture of the head that looks straight ahead.
     fn is_beside_picture(&self, name: &str) -> bool {
         let head = HeadCamera {
             pan: 0.0,
             ..*self.app.world().resource::<HeadCamera>()
         };
         let camera = Camera::of_head(&head, &self.belief.table);
-        let Some(object) = self.belief.objects.get(name) else {
-            return true;
-        };
-        let size = Vec2::new(camera.width as f32, camera.height as f32);
-        let pixel = camera.pixel_of(object.pose.location);
-        pixel.is_none_or(|pixel| !Rect::from_corners(Vec2::ZERO, size).contains(pixel))
+        let known = self.known.iter().find(|(own, _)| own == name);
+        let seen = self.belief.objects.get(name);
+        known
+            .zip(seen)
+            .is_none_or(|((_, known), seen)| known.is_cut_off(seen.pose, &camera))
     }
 
     /// Turns the neck to an angle, in rad. False if it has none, or does not get there.
@@ -213,7 +214,8 @@ impl<'a> SeeingStage<'a> {
         for (number, limb) in limbs.iter().enumerate() {
             let end_effector = self.body.end_effector(number, &limb.angles);
             let Some(name) = limb.holds.first().cloned() else {
-                self.held[number] = None;
+                let let_go = self.held[number].take();
+                self.let_go.extend(let_go.map(|(name, _)| name));
                 continue;
             };
             let Some(object) = self.belief.objects.get_mut(&name) else {
@@ -239,6 +241,7 @@ impl<'a> SeeingStage<'a> {
             Some(before) => known.turned_least(pose, before.pose.rotation),
             None => pose,
         };
+        self.let_go.remove(name);
         let truth = self.observer.sight().objects.get(name);
         if let Some(object) = truth {
             let seen = SeenObject {

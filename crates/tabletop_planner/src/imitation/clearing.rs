@@ -16,7 +16,7 @@ use crate::{
 
 /// How many things are moved out of the way for a step.
 pub(super) const MOST_CLEARED: usize = 4;
-/// Distance, in units, below which an object leaves no room for fingers.
+/// Distance, in units and hand sizes, below which an object leaves no room for fingers.
 const FINGER_ROOM: f32 = 0.7;
 
 impl Imitator<'_> {
@@ -90,7 +90,7 @@ impl Imitator<'_> {
             .iter()
             .filter(|(other, seen)| is_movable(other, seen))
             .map(|(other, seen)| (gap(seen), other))
-            .filter(|(gap, _)| *gap < FINGER_ROOM);
+            .filter(|(gap, _)| *gap < FINGER_ROOM * self.body.hand_size());
         let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
         Ok(nearest.map(|(_, other)| other.clone()))
     }

@@ -10,6 +10,9 @@ use crate::{
     support,
 };
 
+/// The distance of an object from its support, in units, in which no picture tells whether it touches.
+const TOUCHING: f32 = 0.03;
+
 impl ObjectArrangement<'_, '_> {
     /// Refines an object among the others: along its guide, on what it stands on, or in the air. What it guides moves with it. Returns by how much, in
     /// units, it moved.
@@ -114,7 +117,12 @@ impl ObjectArrangement<'_, '_> {
             };
             let allowance = self.allowance * gain.abs() + 20.0 * self.noise.max(1.0);
             settled = match best {
-                Some((placement, standing)) if standing.gain <= gain + allowance => placement,
+                Some((placement, standing))
+                    if standing.gain <= gain + allowance
+                        || (placement.location.z - free.location.z).abs() < TOUCHING =>
+                {
+                    placement
+                }
                 _ => {
                     refinement.is_free = true;
                     hovering
