@@ -15,8 +15,7 @@ use tabletop_core::{
 };
 use tabletop_geometry::{PlacedSolid, Pose};
 use tabletop_planner::{
-    LimbOrder, Piece, PlanningStage, RobotBody, Stopped, carrying_room, drives, is_feasible,
-    scatter,
+    LimbOrder, Piece, PlanningStage, RobotBody, Stopped, drives, is_feasible, scatter,
 };
 use tabletop_task::{Arrangement, Requirements, Task};
 
@@ -186,7 +185,7 @@ pub fn scattered(
         .chain(arms.into_iter().filter(low))
         .collect();
     let seed = Random::new(seed).bits();
-    let room = carrying_room(&pieces);
+    let room = body.map_or(0.0, |body| body.carrying_room(&pieces));
     let is_reached = |points: &[Vec3]| body.is_none_or(|body| body.reaches(points, room));
     let motions = scatter(&pieces, &arrangement, &scene.table, &kept, is_reached, seed)?;
     let items = scene.items.iter().zip(motions);

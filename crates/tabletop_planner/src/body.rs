@@ -144,9 +144,17 @@ impl RobotBody {
             .map(|limb| LimbBody::new(layout, limb, &model))
             .collect();
         let limbs = limbs?;
+        // The simulator's fingers stand in for those of the description.
+        let is_finger = |name: &String| {
+            let grippers = layout.limbs.iter().map(|limb| &limb.gripper);
+            name.contains("_finger")
+                || grippers
+                    .flat_map(|it| it.fingers.iter().flatten())
+                    .any(|own| own == name)
+        };
         let links = model.links().iter().filter_map(|link| {
             let solids: Vec<_> = link.collisions.iter().filter_map(solid).collect();
-            if solids.is_empty() || link.name.contains("_finger") {
+            if solids.is_empty() || is_finger(&link.name) {
                 return None;
             }
             let id = model.find_link(&link.name).ok()?;

@@ -43,6 +43,6 @@ pub use goals::{Before, goal_poses, is_met};
 pub use grasp::{Grasp, GraspSide, grasps};
 pub use imitation::{Doing, Imitation, imitate, undone};
 pub use proximity::NearThing;
-pub use scatter::{Piece, carrying_room, scatter};
+pub use scatter::{Piece, scatter};
 pub use sight::{Arranged, Solids};
 pub use stage::{Following, LimbOrder, PlanningStage, Stopped, drives};

@@ -33,21 +33,12 @@ const TRIES: u32 = 3000;
 const EDGE: f32 = 0.05;
 /// Height from which on things are taken from beside, in units: no arm has room above them.
 const HIGH: f32 = 4.0;
-/// Room above the holds in which things are carried, in units: over a tower of all of them, or as high as this.
+/// Room above the holds in which things are carried, in units and hand sizes: over a tower of all others, or as high as this.
 const MOST_ROOM: f32 = 2.5;
-/// From what is carried to the top of that tower, in units.
+/// From what is carried to the top of that tower, in units and hand sizes.
 const CLEAR: f32 = 0.5;
 /// Height of a hold above a point that is to be reached, in units and hand sizes.
 const HOLD: f32 = 0.3;
-
-/// The room above these pieces, in units, in which a robot carries them.
-pub fn carrying_room(pieces: &[Piece]) -> f32 {
-    let heights = pieces.iter().map(|piece| {
-        let tops = piece.solids.iter().map(|solid| solid.heights()[1]);
-        tops.fold(0.0, f32::max)
-    });
-    (heights.sum::<f32>() + CLEAR).min(MOST_ROOM)
-}
 
 /// Motions that bring all pieces to random places, turned by random angles. `is_reached` must hold of each group of points that has to be reached.
 /// Pieces that stand on, in or around others move with them. Nothing comes near the solids `kept` free. `None` if there is
@@ -118,6 +109,19 @@ pub fn scatter(
 }
 
 impl RobotBody {
+    /// The room above these pieces, in units, in which it carries them.
+    pub fn carrying_room(&self, pieces: &[Piece]) -> f32 {
+        let heights = pieces.iter().map(|piece| {
+            let tops = piece.solids.iter().map(|solid| solid.heights()[1]);
+            tops.fold(0.0, f32::max)
+        });
+        let [tower, least] = heights.fold([0.0, f32::INFINITY], |[tower, least], height| {
+            [tower + height, height.min(least)]
+        });
+        let hand = self.hand_size();
+        (tower - least + CLEAR * hand).clamp(0.0, MOST_ROOM * hand.max(1.0))
+    }
+
     /// The point of an object, in its frame, that has to be reached to take it from above where it fits best between the fingers; its origin, if it fits
     /// nowhere.
     pub fn hold(&self, shape: &Shape, pose: Pose) -> Vec3 {

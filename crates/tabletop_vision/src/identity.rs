@@ -18,7 +18,7 @@ pub(crate) fn keep_identities<T>(
     let mut is_settled = vec![false; objects.len()];
     for i in 0..objects.len() {
         // The nearest pair of a former and a present place, among those that are left.
-        let free = |j: &usize| !is_settled[*j] && objects[*j] == objects[i];
+        let free = |j: &usize| !is_settled[*j] && objects[*j].looks_like(&objects[i]);
         let alike: Vec<_> = (0..objects.len()).filter(free).collect();
         let pairs = alike
             .iter()

@@ -15,7 +15,7 @@ use crate::{
 
 /// Openings of the fingers for a release, in units beyond the held width. The first that has room is used.
 const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
-/// Distances by which an arm withdraws from a released object, in units: rather more than less.
+/// Distances by which an arm withdraws from a released object, in units, and for a small hand in hand sizes: rather more than less.
 const BACK: [f32; 3] = [1.4, 1.0, 0.6];
 
 /// A feasible way to put the held object down.
@@ -102,15 +102,19 @@ impl Transfer<'_> {
         at: Pose,
     ) -> Option<Path> {
         let by = self.height(sight, at);
-        [by, by + 0.5, (by - 0.4).max(0.3)]
-            .into_iter()
-            .find_map(|by| {
-                let up = lift(holding, from, by)?;
-                // At the beginning, the held object touches its support.
-                holding
-                    .is_way_free(&up[1.min(up.len() - 1)..], Margins::NARROW)
-                    .then_some(up)
-            })
+        self.heights_to_try(by).into_iter().find_map(|by| {
+            let up = lift(holding, from, by)?;
+            // At the beginning, the held object touches its support.
+            holding
+                .is_way_free(&up[1.min(up.len() - 1)..], Margins::NARROW)
+                .then_some(up)
+        })
+    }
+
+    /// Heights to which an object may be lifted, if this one passes over everything.
+    fn heights_to_try(&self, by: f32) -> [f32; 3] {
+        let hand = self.body.hand_size().min(1.0);
+        [by, by + 0.5 * hand, (by - 0.4 * hand).max(0.3 * hand)]
     }
 
     /// Height, in units, to which an object must be lifted to pass over everything around this place of it.
@@ -128,9 +132,10 @@ impl Transfer<'_> {
                 let is_within = (other.pose.location - at.location).truncate().length() < 0.3;
                 is_within || solids.iter().any(is_near)
             });
+        let hand = self.body.hand_size().min(1.0);
         let tops = near.map(|other| other.heights()[1] - lowest);
         tops.filter(|top| *top > 0.03)
-            .fold(0.4, |by, top| by.max(top + 0.2))
+            .fold(0.4 * hand, |by, top| by.max(top + 0.2 * hand))
     }
 
     /// Paths from where the object is lifted to above a goal, and down to these angles of the arm.
@@ -150,17 +155,15 @@ impl Transfer<'_> {
         let released = Clearance::new(self.body, sight, self.limb, &[self.object]).taking(there);
         let opening = self.release(released, put, holding.opening)?;
         let by = self.height(sight, goal.pose);
-        [by, by + 0.5, (by - 0.4).max(0.3)]
-            .into_iter()
-            .find_map(|by| {
-                let up = lift(holding, put, by)?;
-                if !holding.is_way_free(&up, Margins::NARROW) {
-                    return None;
-                }
-                let way = transit(holding, lifted.last()?, up.last()?, search)?;
-                let down = up.iter().rev().skip(1).chain([put]).copied().collect();
-                Some(Placing { way, down, opening })
-            })
+        self.heights_to_try(by).into_iter().find_map(|by| {
+            let up = lift(holding, put, by)?;
+            if !holding.is_way_free(&up, Margins::NARROW) {
+                return None;
+            }
+            let way = transit(holding, lifted.last()?, up.last()?, search)?;
+            let down = up.iter().rev().skip(1).chain([put]).copied().collect();
+            Some(Placing { way, down, opening })
+        })
     }
 
     /// Opening of the fingers, in units, at which the arm can let go of a part of this width and withdraw.
@@ -177,7 +180,7 @@ impl Transfer<'_> {
 
 /// The way back from an object that has been let go, to where the arm is free to go on.
 fn back(released: &Clearance, from: &Angles) -> Option<Path> {
-    BACK.into_iter().find_map(|by| {
+    distances_back(released).find_map(|by| {
         let back = withdraw(released, from, by)?;
         let is_free = released.is_way_free(&back, Margins::BARE)
             && released.is_free(back.last()?, Margins::TIGHT);
@@ -185,8 +188,14 @@ fn back(released: &Clearance, from: &Angles) -> Option<Path> {
     })
 }
 
+fn distances_back(released: &Clearance) -> impl Iterator<Item = f32> + use<> {
+    let hand = released.hand_size();
+    let small = BACK.into_iter().filter(move |_| hand < 1.0);
+    BACK.into_iter().chain(small.map(move |by| by * hand))
+}
+
 /// The same, or without a free one any way that the arm can go.
 pub(super) fn back_or_out(released: &Clearance, from: &Angles) -> Option<Path> {
-    let any = || BACK.into_iter().find_map(|by| withdraw(released, from, by));
+    let any = || distances_back(released).find_map(|by| withdraw(released, from, by));
     back(released, from).or_else(any)
 }

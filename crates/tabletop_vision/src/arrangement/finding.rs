@@ -44,7 +44,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
     ) -> Option<(usize, StandingPose)> {
         let open = (0..self.objects.len()).filter(|&i| {
             // Of objects that look the same, the first one is looked for.
-            let is_alike = |j: usize| self.objects[j] == self.objects[i];
+            let is_alike = |j: usize| self.objects[j].looks_like(&self.objects[i]);
             self.placements[i].is_none()
                 && self.objects[i].guide().is_none()
                 && !(0..i).any(|j| self.placements[j].is_none() && is_alike(j))
