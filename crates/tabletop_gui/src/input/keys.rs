@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{Actor, ClockCommand, CommandWriter, Paused, Recording};
-use tabletop_user::{Action, Editing, KeySystems, was_struck};
+use tabletop_user::{Action, Chosen, Editing, KeySystems, Measuring, was_struck};
 
 use crate::panels::{context_menu::ContextMenu, quit::QuitQuestion};
 
@@ -25,16 +25,25 @@ fn toggle_pause(paused: Res<Paused>, mut commands: CommandWriter) {
     commands.write(Actor::Key, ClockCommand::SetPaused(!paused.0));
 }
 
-/// Closes the menu that is open, or ends the program; asks before that if a recording runs, or edits are not saved.
+/// Closes the menu that is open, ends measuring, gives up the choice of an object, or ends the program; asks before that if a recording runs, or edits are not saved.
 fn quit(
     mut exit: MessageWriter<AppExit>,
     mut menu: ResMut<ContextMenu>,
+    mut chosen: ResMut<Chosen>,
+    mut measuring: ResMut<Measuring>,
     mut commands: CommandWriter,
     mut question: ResMut<QuitQuestion>,
     recording: Res<Recording>,
     editing: Res<Editing>,
 ) {
-    if !menu.close(&mut commands) && !question.asks(&recording, &editing) {
+    if menu.close(&mut commands) {
+        return;
+    }
+    if measuring.is_on {
+        measuring.switch();
+    } else if chosen.0.is_some() {
+        chosen.0 = None;
+    } else if !question.asks(&recording, &editing) {
         exit.write(AppExit::Success);
     }
 }
@@ -101,6 +110,18 @@ mod tests {
         app.insert_resource(Recording(true));
         strike(&mut app, KeyCode::Escape);
         assert_eq!(app.should_exit(), None);
+    }
+
+    #[test]
+    fn escape_first_gives_up_the_choice_of_an_object() {
+        let mut app = app();
+        let object = app.world_mut().spawn_empty().id();
+        app.insert_resource(Chosen(Some(object)));
+        strike(&mut app, KeyCode::Escape);
+        assert_eq!(app.should_exit(), None);
+        assert_eq!(*app.world().resource::<Chosen>(), Chosen(None));
+        strike(&mut app, KeyCode::Escape);
+        assert_eq!(app.should_exit(), Some(AppExit::Success));
     }
 
     #[test]
