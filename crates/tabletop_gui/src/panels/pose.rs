@@ -70,6 +70,9 @@ fn show_panel(
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
+    if !panels.is_open(Panel::Pose) {
+        return;
+    }
     let hand = hands.selected;
     let held = regard.held();
     let model = Model {
