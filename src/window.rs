@@ -1,6 +1,7 @@
 //! The program in a window.
 
 mod background;
+mod debug;
 mod display;
 mod editing;
 mod files;
@@ -67,6 +68,8 @@ pub struct WindowOptions {
     pub screenshot: Option<ScreenshotAt>,
     /// A file that lists the widgets on the screen, for programs that click.
     pub widgets: Option<PathBuf>,
+    /// True if every command and every fact is written to the console.
+    pub is_verbose: bool,
 }
 
 /// The content of a window's table.
@@ -113,11 +116,16 @@ pub fn run(options: WindowOptions) -> Result<AppExit, NoWindow> {
 ///
 /// As [`run`].
 pub fn run_beside(options: WindowOptions, real: Option<Connected>) -> Result<AppExit, NoWindow> {
+    let is_verbose = options.is_verbose;
     let mut app = no_window::catch(|| build(options))?;
     if let Some(real) = real {
         real.stand_in(&mut app);
     }
-    app.add_plugins((PanicHandlerPlugin, log(), TerminalCtrlCHandlerPlugin));
+    app.add_plugins((
+        PanicHandlerPlugin,
+        log(is_verbose),
+        TerminalCtrlCHandlerPlugin,
+    ));
     Ok(app.run())
 }
 
@@ -200,6 +208,9 @@ fn build(options: WindowOptions) -> App {
     if let Some(keys) = options.keys {
         app.insert_resource(KeymapFile(keys));
     }
+    if options.is_verbose {
+        app.add_plugins(debug::plugin);
+    }
     if let Some(file) = options.widgets {
         app.add_plugins(WidgetListPlugin { file });
     }
@@ -209,10 +220,14 @@ fn build(options: WindowOptions) -> App {
     app
 }
 
-fn log() -> LogPlugin {
+fn log(is_verbose: bool) -> LogPlugin {
+    let filter = match is_verbose {
+        true => "tabletop=debug",
+        false => "tabletop=info",
+    };
     LogPlugin {
         level: Level::WARN,
-        filter: "tabletop=info".into(),
+        filter: filter.into(),
         ..default()
     }
 }

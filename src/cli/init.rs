@@ -1,4 +1,6 @@
-//! `tabletop init`: a working folder with the files inside the program, for changing them.
+//! `tabletop init`: a working folder with the files inside the program, for changing them; and what starts the program from a desktop.
+
+mod desktop;
 
 use std::{
     io::ErrorKind,
@@ -18,8 +20,11 @@ use super::{Failure, Output};
 #[derive(Args)]
 pub(super) struct InitArgs {
     /// The folder, which is made if it does not exist; `.` for the current one
-    #[arg(value_name = "DIR")]
-    folder: PathBuf,
+    #[arg(value_name = "DIR", required_unless_present = "desktop")]
+    folder: Option<PathBuf>,
+    /// Also put the program, with its icon, among the desktop's applications, so that it is started from there
+    #[arg(long)]
+    desktop: bool,
 }
 
 /// The thing that exists at the place of a file.
@@ -29,13 +34,23 @@ enum Existing {
     SomethingElse,
 }
 
-/// Writes the missing files, each whole or not at all, unless an existing one differs.
 pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
+    if let Some(folder) = &args.folder {
+        make_folder(folder)?;
+    }
+    if args.desktop {
+        desktop::install(args.folder.as_deref())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the missing files, each whole or not at all, unless an existing one differs.
+fn make_folder(target: &Path) -> Result<(), Failure> {
     let mut missing = Vec::new();
     let mut differing = Vec::new();
     for folder in WORKING_FOLDERS {
         for file in shipped_files().in_folder(folder) {
-            let path = args.folder.join(file.path);
+            let path = target.join(file.path);
             match look_at(&path, file)? {
                 Existing::Nothing => missing.push((path, file)),
                 Existing::TheSame => {}
@@ -63,7 +78,7 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
         let written = missing.iter().filter(|(_, file)| is_in(folder, file));
         let written = written.count();
         let there = shipped_files().in_folder(folder).count() - written;
-        let place = args.folder.join(folder);
+        let place = target.join(folder);
         let line = match (written, there) {
             (written, 0) => format!("{}: {written} files written\n", place.display()),
             (0, there) => format!("{}: {there} files there already\n", place.display()),
@@ -74,7 +89,7 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
         };
         Output::Stdout.write(line.as_bytes())?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }
 
 fn look_at(path: &Path, file: &ShippedFile) -> Result<Existing, Failure> {

@@ -56,6 +56,10 @@ pub(super) struct WindowArgs {
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE")]
     widgets: Option<PathBuf>,
+    /// Write every command and every fact of the simulation to the console
+    #[cfg(feature = "window")]
+    #[arg(long)]
+    debug: bool,
     #[cfg(feature = "window")]
     #[command(flatten)]
     display: super::display::DisplayArgs,
@@ -118,6 +122,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
             seconds: args.after as f32,
         }),
         widgets: args.widgets,
+        is_verbose: args.debug,
     };
     match window::run_beside(options, real) {
         Ok(exit) => Ok(exit_code(exit, result)),
@@ -157,6 +162,7 @@ pub(super) fn play(
         seed: window::DEFAULT_SEED,
         screenshot: None,
         widgets: None,
+        is_verbose: false,
     };
     let exit = window::run(options).map_err(Failure::run)?;
     Ok(exit_code(exit, ExitCode::SUCCESS))

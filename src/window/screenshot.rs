@@ -11,6 +11,7 @@ use bevy::{
     render::view::screenshot::{Screenshot, ScreenshotCaptured},
 };
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
+use tabletop_gui::Unattended;
 use tabletop_storage::Storage;
 
 /// Number of frames after which everything on the table is certainly drawn.
@@ -28,6 +29,7 @@ pub struct ScreenshotAt {
 impl ScreenshotAt {
     pub(super) fn plan(self, app: &mut App) {
         app.insert_resource(self)
+            .insert_resource(Unattended)
             .add_systems(Update, take.run_if(is_due.and_then(run_once)));
     }
 

@@ -141,3 +141,28 @@ fn shells_get_completions() {
     let checked = bash.args(["-n", "-c", &script]).status();
     assert!(checked.is_ok_and(|status| status.success()));
 }
+
+#[test]
+fn the_program_is_put_among_the_applications_of_the_desktop() {
+    let folder = folder("desktop");
+    let data = folder.join("data");
+    let output = command(&["init", "work", "--desktop"])
+        .current_dir(&folder)
+        .env("XDG_DATA_HOME", &data)
+        .output()
+        .unwrap();
+    succeeded(&output);
+    let entry = fs::read_to_string(data.join("applications/tabletop.desktop")).unwrap();
+    assert!(entry.contains(env!("CARGO_BIN_EXE_tabletop")), "{entry}");
+    let work = folder.join("work");
+    assert!(
+        entry.contains(&format!("Path={}\n", work.display())),
+        "{entry}"
+    );
+    assert!(work.join("tablesetup").is_dir());
+    assert!(
+        data.join("icons/hicolor/scalable/apps/tabletop.svg")
+            .is_file()
+    );
+    fs::remove_dir_all(folder).unwrap();
+}

@@ -20,6 +20,7 @@
 pub mod display;
 mod files;
 mod input;
+mod kept;
 pub mod keymap_file;
 mod panels;
 mod picture;
@@ -28,11 +29,13 @@ mod preset_seeds;
 mod scale;
 #[cfg(test)]
 mod test_world;
+mod theme;
 mod widget_list;
 mod widgets;
 
 pub use files::{FileRequest, Files, TaskFile};
 pub use panels::help::Help;
+pub use panels::hints::Unattended;
 pub use panels::messages::{Notices, Tone};
 pub use panels::status::Renderer;
 pub use panels::{Browser, Panel, Panels, Purpose};
@@ -81,7 +84,7 @@ impl Plugin for GuiPlugin {
 /// All that does not need a renderer.
 fn add_parts(app: &mut App) {
     app.add_plugins((
-        widgets::style::plugin,
+        theme::plugin,
         input::focus::plugin,
         input::keys::plugin,
         input::history_keys::plugin,
@@ -121,8 +124,14 @@ fn add_parts(app: &mut App) {
         panels::browser::plugin,
         panels::quit::plugin,
         input::mechanism_keys::plugin,
+        input::key_moves::plugin,
+        input::measure::plugin,
+        input::clear_view::plugin,
         panels::context_menu::plugin,
         panels::caption::plugin,
+        panels::hints::plugin,
+        panels::name_tag::plugin,
+        panels::pose::plugin,
     ));
 }
 

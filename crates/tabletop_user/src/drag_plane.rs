@@ -6,7 +6,8 @@ use bevy::prelude::*;
 
 use tabletop_core::Table;
 
-/// The upright plane through the held object of the selected hand, in which the mouse drags it (report section 4, figure 8g).
+/// The plane through the held object of the selected hand, in which the mouse drags it: upright (report section 4, figure 8g), or level if
+/// the user has [chosen](crate::Dragging) that.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource)]
 pub struct DragPlane {
@@ -14,6 +15,8 @@ pub struct DragPlane {
     pub heading: f32,
     /// True while the perpendicular plane stands in for it.
     pub is_perpendicular: bool,
+    /// True if it lies level.
+    pub is_level: bool,
 }
 
 impl DragPlane {
@@ -22,20 +25,25 @@ impl DragPlane {
         Self {
             heading: libm::atan2f(-direction_of_view.x, direction_of_view.y),
             is_perpendicular: false,
+            is_level: false,
         }
     }
 
-    /// The rotation about Z from the plane of X and Z to the shown plane.
+    /// The rotation from the plane of X and Z to the shown plane.
     pub fn rotation(self) -> Quat {
         let quarter = if self.is_perpendicular {
             FRAC_PI_2
         } else {
             0.0
         };
-        Quat::from_rotation_z(self.heading + quarter)
+        let upright = Quat::from_rotation_z(self.heading + quarter);
+        match self.is_level {
+            true => upright * Quat::from_rotation_x(FRAC_PI_2),
+            false => upright,
+        }
     }
 
-    /// Its level normal, which points away from the viewer.
+    /// Its normal, which points away from the viewer, or up.
     pub fn normal(self) -> Vec3 {
         self.rotation() * Vec3::Y
     }
@@ -67,11 +75,25 @@ mod tests {
         let plane = DragPlane {
             heading: 0.3,
             is_perpendicular: true,
+            is_level: false,
         };
         let shown = DragPlane {
             heading: 0.3 + FRAC_PI_2,
             is_perpendicular: false,
+            is_level: false,
         };
         assert!((plane.normal() - shown.normal()).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_level_plane_has_an_upright_normal_whatever_its_heading() {
+        for heading in [0.0, 0.3, -2.0] {
+            let plane = DragPlane {
+                heading,
+                is_perpendicular: heading > 0.0,
+                is_level: true,
+            };
+            assert!((plane.normal() - Vec3::Z).length() < 1e-6);
+        }
     }
 }

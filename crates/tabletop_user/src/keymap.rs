@@ -17,6 +17,7 @@ use bevy_input::{ButtonInput, keyboard::KeyCode};
 use tabletop_core::{Hands, RobotLayout};
 
 use self::table::ActionRow;
+use crate::Chosen;
 
 /// The keys of each action. A key is known by its place on the keyboard, not by its letter, unless
 /// [Ctrl or the like](KeyLetters) is held down with it. The robot's layout decides which joints have actions.
@@ -131,9 +132,14 @@ impl Keymap {
         conflicts
     }
 
-    /// The action of a key pressed with these modifiers. Shift has no effect on a key unless a binding names it. While the hand
-    /// holds something, the actions on the held object come first.
-    pub fn action(&self, key: KeyCode, held: Modifiers, is_holding: bool) -> Option<Action> {
+    /// The action of a key pressed with these modifiers. Shift has no effect on a key unless a binding names it. Actions on the chosen
+    /// object come first, then those on the held one.
+    fn action(
+        &self,
+        key: KeyCode,
+        held: Modifiers,
+        is_present: impl Fn(Situation) -> bool,
+    ) -> Option<Action> {
         let fitting = self.rows.iter().flat_map(|row| {
             let bindings = self.bindings(row.action).iter();
             bindings.map(move |binding| (*binding, row))
@@ -141,13 +147,11 @@ impl Keymap {
         fitting
             .filter(|(binding, row)| {
                 let fits = match row.situation {
-                    Situation::Any => binding.fits(held),
+                    Situation::Any | Situation::Choosing => binding.fits(held),
                     // Here Ctrl is a key of its own.
-                    Situation::Holding => {
-                        is_holding && (binding.fits(held) || binding.fits(held.without_ctrl()))
-                    }
+                    Situation::Holding => binding.fits(held) || binding.fits(held.without_ctrl()),
                 };
-                binding.key == key && fits
+                binding.key == key && fits && is_present(row.situation)
             })
             .min_by_key(|(binding, row)| {
                 let uses_shift = binding.modifiers.shift;
@@ -205,6 +209,7 @@ pub struct Keys<'w> {
     focus: Res<'w, KeyboardFocus>,
     letters: Res<'w, KeyLetters>,
     hands: Res<'w, Hands>,
+    chosen: Res<'w, Chosen>,
 }
 
 impl Keys<'_> {
@@ -222,10 +227,14 @@ impl Keys<'_> {
 
     /// The action of a key that is or was down in this frame.
     pub fn meaning(&self, key: KeyCode) -> Option<Action> {
-        let is_holding = self.hands.held_by(self.hands.selected).is_some();
+        let is_present = |situation| match situation {
+            Situation::Any => true,
+            Situation::Holding => self.hands.held_by(self.hands.selected).is_some(),
+            Situation::Choosing => self.chosen.0.is_some(),
+        };
         let modifiers = self.modifiers_of(key);
         let letter = self.letters.with(modifiers, key);
-        let action = self.keymap.action(letter, modifiers, is_holding);
+        let action = self.keymap.action(letter, modifiers, is_present);
         action.filter(|_| self.focus.leaves(key))
     }
 
@@ -234,12 +243,12 @@ impl Keys<'_> {
         f32::from(i8::from(self.is_held(plus)) - i8::from(self.is_held(minus)))
     }
 
-    /// The modifiers of a key. In a slow frame they may have come up since the key did.
+    /// The modifiers of a key. In a slow frame they may have come up since the key went down or up.
     fn modifiers_of(&self, key: KeyCode) -> Modifiers {
-        let is_up_again = !self.keys.pressed(key);
-        Modifiers::that_are(|key| {
-            let was_down = self.keys.just_pressed(key) || self.keys.just_released(key);
-            self.keys.pressed(key) || (is_up_again && was_down)
+        let has_changed = self.keys.just_pressed(key) || !self.keys.pressed(key);
+        Modifiers::that_are(|modifier| {
+            let was_down = self.keys.just_pressed(modifier) || self.keys.just_released(modifier);
+            self.keys.pressed(modifier) || (has_changed && was_down)
         })
     }
 }
@@ -264,6 +273,7 @@ mod tests {
         world.init_resource::<KeyLetters>();
         world.init_resource::<ButtonInput<KeyCode>>();
         world.init_resource::<Hands>();
+        world.init_resource::<Chosen>();
         world
     }
 
@@ -278,6 +288,11 @@ mod tests {
         let mut hands = world.resource_mut::<Hands>();
         hands.selected = Hand::Left;
         hands.set_held(Hand::Left, Some(object));
+    }
+
+    fn choose_something(world: &mut World) {
+        let object = world.spawn_empty().id();
+        world.insert_resource(Chosen(Some(object)));
     }
 
     /// Actions asked for with these keys held down.
@@ -303,8 +318,10 @@ mod tests {
         let keymap = Keymap::default();
         for action in keymap.actions() {
             for binding in keymap.default_bindings(action) {
-                if keymap.situation(action) == Situation::Holding {
-                    hold_something(&mut world);
+                match keymap.situation(action) {
+                    Situation::Any => {}
+                    Situation::Holding => hold_something(&mut world),
+                    Situation::Choosing => choose_something(&mut world),
                 }
                 let Modifiers { ctrl, shift, .. } = binding.modifiers;
                 let modifiers = [(ctrl, ControlRight), (shift, ShiftRight)];
@@ -313,6 +330,7 @@ mod tests {
                 keys.push(binding.key);
                 assert_eq!(held(&mut world, &keys), [action], "{binding}");
                 world.insert_resource(Hands::default());
+                world.insert_resource(Chosen::default());
             }
         }
     }
@@ -337,7 +355,8 @@ mod tests {
         assert_eq!(held(&mut world, &question_mark), [Action::ShowHelp]);
         assert_eq!(held(&mut world, &[Slash]), []);
         hold_something(&mut world);
-        assert_eq!(held(&mut world, &question_mark), [Action::PlaneClockwise]);
+        let turned = [Action::PlaneClockwise, Action::PlaneUpright];
+        assert_eq!(held(&mut world, &question_mark), turned);
         assert_eq!(held(&mut world, &[Slash]), [Action::PlaneCounterClockwise]);
         let mut both = held(&mut world, &[ControlLeft, Slash]);
         both.sort();
@@ -345,6 +364,21 @@ mod tests {
             both,
             [Action::PlaneCounterClockwise, Action::PlanePerpendicular]
         );
+    }
+
+    #[test]
+    fn arrows_move_the_chosen_object_and_else_turn_the_camera() {
+        let mut world = world();
+        assert_eq!(held(&mut world, &[ArrowLeft]), [Action::LookLeft]);
+        assert_eq!(held(&mut world, &[Enter]), []);
+        choose_something(&mut world);
+        assert_eq!(held(&mut world, &[ArrowLeft]), [Action::ObjectLeft]);
+        assert_eq!(
+            held(&mut world, &[ShiftLeft, ArrowLeft]),
+            [Action::TurnLeft]
+        );
+        assert_eq!(held(&mut world, &[Enter]), [Action::TakeOrRelease]);
+        assert_eq!(held(&mut world, &[KeyW]), [Action::CameraForward]);
     }
 
     #[test]
@@ -377,6 +411,24 @@ mod tests {
         };
         let struck = world.run_system_once(struck).unwrap();
         assert_eq!(struck, [Action::Undo]);
+    }
+
+    #[test]
+    fn a_chord_keeps_ctrl_that_comes_up_in_the_frame_in_which_its_key_goes_down() {
+        for is_ctrl_new in [true, false] {
+            let mut world = world();
+            let mut input = world.resource_mut::<ButtonInput<KeyCode>>();
+            input.press(ControlLeft);
+            if !is_ctrl_new {
+                input.clear();
+            }
+            input.press(KeyZ);
+            input.release(ControlLeft);
+            let struck = |keys: Keys| {
+                [Action::Undo, Action::CameraDown].map(|action| keys.was_struck(action))
+            };
+            assert_eq!(world.run_system_once(struck).unwrap(), [true, false]);
+        }
     }
 
     #[test]

@@ -1,28 +1,40 @@
-//! The user before the window: keys and their actions, the camera he looks through, the plane he drags in, the pace of time, the
+//! The user before the window: keys and their actions, the camera he looks through, how and where he drags, the pace of time, the
 //! imitation and the edits of a recording that he watches, and the real robot that he connects to.
 //!
 //! View and panels share it and do not know each other. A world without a window has none of it.
 
+mod chosen;
 mod connection;
 mod drag_plane;
+mod dragging;
 mod editing;
 mod ghost;
+mod held_axes;
 mod imitating;
 mod keymap;
+mod measuring;
 mod navigation;
+mod neighborhood;
 mod pace;
+mod robot_look;
 
+pub use chosen::Chosen;
 pub use connection::{Connection, ConnectionOrder, DrivingLeave};
 pub use drag_plane::DragPlane;
+pub use dragging::Dragging;
 pub use editing::{EditOrder, Editing, TimelineEdit};
 pub use ghost::{Ghost, Ghosts};
+pub use held_axes::HeldAxes;
 pub use imitating::{Imitating, TaskOrder};
 pub use keymap::{
     Action, ActionGroup, BindingError, JointKeyError, KeyBinding, KeyLetters, KeySystems,
     KeyboardFocus, Keymap, Keys, Modifiers, Situation, Way, was_struck,
 };
+pub use measuring::Measuring;
 pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};
+pub use neighborhood::Neighborhood;
 pub use pace::{Pace, PacePlugin, SingleStep};
+pub use robot_look::RobotLook;
 
 use bevy::prelude::*;
 
@@ -45,16 +57,22 @@ impl Plugin for UserPlugin {
             .add_message::<ConnectionOrder>()
             .add_message::<EditOrder>()
             .add_message::<TaskOrder>()
+            .init_resource::<Chosen>()
             .init_resource::<Connection>()
             .init_resource::<DragPlane>()
+            .init_resource::<Dragging>()
             .init_resource::<Editing>()
             .init_resource::<Ghosts>()
             .init_resource::<Imitating>()
             .init_resource::<KeyLetters>()
             .init_resource::<KeyboardFocus>()
             .init_resource::<Keymap>()
+            .init_resource::<Measuring>()
+            .init_resource::<RobotLook>()
             .init_resource::<Steering>()
+            .register_type::<Chosen>()
             .register_type::<DragPlane>()
+            .register_type::<Dragging>()
             .register_type::<Pace>()
             .register_type::<Steering>()
             .register_type::<UserCamera>()

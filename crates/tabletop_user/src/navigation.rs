@@ -59,6 +59,8 @@ pub enum CameraView {
     Top,
     /// From before the table's near edge, looking level.
     Front,
+    /// The first view from the other side of the table: past the robot, towards the user's side.
+    Across,
     /// The view of the robot's head camera.
     RobotEye,
     /// In the same direction as before, with the held object in the middle, or the table's centre if nothing is held.
@@ -67,10 +69,11 @@ pub enum CameraView {
 
 impl CameraView {
     /// The views, in the order of their buttons.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Start,
         Self::Top,
         Self::Front,
+        Self::Across,
         Self::RobotEye,
         Self::Center,
     ];

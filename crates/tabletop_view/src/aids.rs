@@ -1,10 +1,11 @@
 //! The lines that help the user to place the held object (report section 4, figure 8): its outline, the axes about which
-//! it can be turned, its shadow, and where the plane in which it is dragged meets table and objects.
+//! it can be turned, its shadow, and where the plane in which it is dragged meets table and objects. What the other hand holds and what the
+//! keyboard has chosen have outlines of their own.
 
 use bevy::prelude::*;
-use tabletop_core::{Hands, ObjectSpec};
+use tabletop_core::{Hand, Hands, ObjectSpec};
 use tabletop_geometry::{Pose, Primitive};
-use tabletop_user::{DragPlane, UserCamera};
+use tabletop_user::{Chosen, DragPlane, HeldAxes, UserCamera};
 
 use crate::{
     held::HeldVisual,
@@ -12,9 +13,6 @@ use crate::{
     silhouette,
     visual::{Filled, Visual},
 };
-
-/// Length of the axes in units.
-const AXIS_LENGTH: f32 = 10.0;
 
 /// Length of their arrowheads in units.
 const ARROW_TIP: f32 = 0.3;
@@ -30,6 +28,10 @@ const FOOT: f32 = 0.3;
 const THIN_IN_FRONT: f32 = -0.0004;
 const THICK_IN_FRONT: f32 = -0.001;
 
+/// Outlines of what the other hand holds, and of what the keyboard has chosen.
+const OTHER_HAND: Color = Color::srgb(1.0, 0.6, 0.1);
+const CHOSEN: Color = Color::srgb(0.25, 0.77, 0.71);
+
 /// Axes, shadow and sections.
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct ThinLines;
@@ -44,7 +46,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(
             Update,
             (
-                draw_outline,
+                (draw_outline, draw_other_outlines),
                 draw_axes,
                 draw_shadow,
                 draw_sections,
@@ -79,6 +81,27 @@ fn draw_outline(
     }
 }
 
+fn draw_other_outlines(
+    mut gizmos: Gizmos<ThickLines>,
+    held: HeldVisual,
+    hands: Res<Hands>,
+    chosen: Res<Chosen>,
+    camera: Single<&Transform, With<UserCamera>>,
+) {
+    let eye = Pose::from(*camera);
+    let selected = hands.held_by(hands.selected);
+    let others = Hand::ALL.into_iter().filter_map(|hand| hands.held_by(hand));
+    let others = others.filter(|&object| Some(object) != selected);
+    let marked = others.map(|object| (object, OTHER_HAND));
+    for (object, color) in marked.chain(chosen.0.map(|object| (object, CHOSEN))) {
+        if let Some(drawn) = held.of(object) {
+            for line in silhouette::outline(eye, drawn.pose, drawn.solids) {
+                gizmos.linestrip(line, color);
+            }
+        }
+    }
+}
+
 /// Draws yellow cubes at the bond points of the held object, and at those where others can be fastened to it.
 fn draw_bond_points(
     mut gizmos: Gizmos<ThinLines>,
@@ -107,7 +130,7 @@ fn draw_axes(mut gizmos: Gizmos<ThinLines>, held: HeldVisual) {
         (Vec3::Y, Color::srgb(0.0, 1.0, 0.0)),
         (Vec3::Z, Color::srgb(0.0, 0.0, 1.0)),
     ] {
-        let half = axis * AXIS_LENGTH / 2.0;
+        let half = axis * HeldAxes::LENGTH / 2.0;
         let center = held.pose.location;
         gizmos
             .arrow(center - half, center + half, color)
@@ -130,7 +153,7 @@ fn draw_shadow(
         .filter(|(visual, ..)| *visual != held.visual)
         .flat_map(|(_, place, filled)| filled.0.iter().map(move |solid| (solid, place.into())));
     if let Some(foot) = foot_of_shadow(center, below) {
-        let end_of_axis = center - Vec3::Z * AXIS_LENGTH / 2.0;
+        let end_of_axis = center - Vec3::Z * HeldAxes::LENGTH / 2.0;
         if foot.z < end_of_axis.z {
             gizmos.line(end_of_axis, foot, Color::BLACK);
         }

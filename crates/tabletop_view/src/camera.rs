@@ -168,6 +168,7 @@ fn carry_out_motions(
                 CameraMotion::Look(CameraView::Front) => {
                     Viewpoint::from_front(&table, picture_of(projection))
                 }
+                CameraMotion::Look(CameraView::Across) => Viewpoint::across(&table),
                 CameraMotion::Look(CameraView::RobotEye) => {
                     let head = head.as_deref().copied().unwrap_or_default();
                     Viewpoint::of_camera(head.pose(&table))

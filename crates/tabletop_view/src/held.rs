@@ -1,4 +1,4 @@
-//! The object in the selected hand, as it is drawn.
+//! Objects as they are drawn: above all the one in the selected hand.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::Hands;
@@ -14,9 +14,9 @@ pub(crate) struct HeldVisual<'w, 's> {
     filled: Query<'w, 's, (&'static Transform, &'static Filled)>,
 }
 
-/// A held object as it is drawn.
+/// An object as it is drawn.
 #[derive(Clone, Copy)]
-pub(crate) struct DrawnHeld<'a> {
+pub(crate) struct DrawnObject<'a> {
     /// Its picture.
     pub visual: Entity,
     /// Its pose on the screen.
@@ -27,11 +27,15 @@ pub(crate) struct DrawnHeld<'a> {
 
 impl HeldVisual<'_, '_> {
     /// The object as it is drawn, if the selected hand holds one.
-    pub fn get(&self) -> Option<DrawnHeld<'_>> {
-        let object = self.hands.held_by(self.hands.selected)?;
+    pub fn get(&self) -> Option<DrawnObject<'_>> {
+        self.of(self.hands.held_by(self.hands.selected)?)
+    }
+
+    /// An object as it is drawn.
+    pub fn of(&self, object: Entity) -> Option<DrawnObject<'_>> {
         let visual = self.visuals.of(object)?;
         let (transform, filled) = self.filled.get(visual).ok()?;
-        Some(DrawnHeld {
+        Some(DrawnObject {
             visual,
             pose: transform.into(),
             solids: &filled.0,

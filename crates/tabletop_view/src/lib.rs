@@ -6,6 +6,7 @@ mod camera;
 mod ghosts;
 mod held;
 mod markers;
+mod measured;
 mod mesh;
 mod motion;
 mod polyhedron;
@@ -46,6 +47,7 @@ impl Plugin for ViewPlugin {
             camera::plugin,
             sheet::plugin,
             aids::plugin,
+            measured::plugin,
         ));
     }
 }

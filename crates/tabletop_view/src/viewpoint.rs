@@ -51,6 +51,20 @@ impl Viewpoint {
         }
     }
 
+    /// The same view from the other side.
+    pub fn across(table: &Table) -> Self {
+        let Self {
+            location,
+            elevation,
+            ..
+        } = Self::of_table(table);
+        Self {
+            location: location.with_y(-location.y),
+            heading: PI,
+            elevation,
+        }
+    }
+
     /// The view of all of a table from above. The picture takes in so much to the right and upwards at a distance of 1.
     pub fn from_above(table: &Table, picture: Vec2) -> Self {
         let distances = Vec2::new(table.xspan, table.yspan) / 2.0 / picture;

@@ -4,6 +4,7 @@
 use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed};
 use tabletop_core::{Figure, ObjectSpec, RestingSystems, Table};
 use tabletop_geometry::{Primitive, Rgb, Solid};
+use tabletop_user::RobotLook;
 
 use crate::{mesh, motion::BodyMotion, surface::Surface};
 
@@ -21,6 +22,10 @@ pub(crate) struct Filled(pub Vec<Primitive>);
 
 /// Everything that has a picture: the table, the objects and the figures.
 type Drawable = Or<(With<ObjectSpec>, With<Table>, With<Figure>)>;
+
+/// The surface of a figure.
+#[derive(Component)]
+struct FigureSurface;
 
 /// The picture of each body.
 #[derive(Resource, Default)]
@@ -42,6 +47,8 @@ pub(crate) struct Looks {
     /// By the polyhedra's numbers; only as long as they are shown.
     polyhedra: HashMap<usize, AssetId<Mesh>>,
     surfaces: HashMap<[u32; 3], Handle<Surface>>,
+    /// That of figures through which the user sees.
+    translucent: Option<Handle<Surface>>,
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -50,7 +57,12 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(FixedPostUpdate, note_moves.in_set(RestingSystems))
         .add_systems(
             RunFixedMainLoop,
-            (drop_pictures, make_pictures, follow_bodies)
+            (
+                drop_pictures,
+                make_pictures,
+                look_through.run_if(resource_changed::<RobotLook>),
+                follow_bodies,
+            )
                 .chain()
                 .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
         );
@@ -99,6 +111,7 @@ fn make_pictures(
     mut looks: ResMut<Looks>,
     mut surfaces: ResMut<Assets<Surface>>,
     mut meshes: ResMut<Assets<Mesh>>,
+    look: Res<RobotLook>,
     bodies: Query<
         (
             Entity,
@@ -130,14 +143,28 @@ fn make_pictures(
                 }
                 if let Some(figure) = figure {
                     parts.spawn((
+                        FigureSurface,
                         Mesh3d(meshes.add(mesh::of_triangles(&figure.fine))),
-                        MeshMaterial3d(looks.surface(Rgb::WHITE, &mut surfaces)),
+                        MeshMaterial3d(looks.of_figure(*look, &mut surfaces)),
                     ));
                 }
             })
             .insert(Filled(filled))
             .id();
         visuals.0.insert(body, visual);
+    }
+}
+
+/// Figures become translucent, or no longer.
+fn look_through(
+    look: Res<RobotLook>,
+    mut looks: ResMut<Looks>,
+    mut surfaces: ResMut<Assets<Surface>>,
+    mut figures: Query<&mut MeshMaterial3d<Surface>, With<FigureSurface>>,
+) {
+    for mut figure in &mut figures {
+        let surface = MeshMaterial3d(looks.of_figure(*look, &mut surfaces));
+        figure.set_if_neq(surface);
     }
 }
 
@@ -157,6 +184,7 @@ impl FromWorld for Looks {
             ball: meshes.add(mesh::unit_ball()),
             polyhedra: HashMap::default(),
             surfaces: HashMap::default(),
+            translucent: None,
         }
     }
 }
@@ -189,6 +217,18 @@ impl Looks {
                     mesh
                 })
             }
+        }
+    }
+
+    fn of_figure(&mut self, look: RobotLook, surfaces: &mut Assets<Surface>) -> Handle<Surface> {
+        match look.is_translucent {
+            true => self
+                .translucent
+                .get_or_insert_with(|| {
+                    surfaces.add(Surface::translucent(Rgb::WHITE, RobotLook::OPACITY))
+                })
+                .clone(),
+            false => self.surface(Rgb::WHITE, surfaces),
         }
     }
 
@@ -329,6 +369,26 @@ mod tests {
         assert_ne!(mesh_of_picture(&mut app).unwrap().0, first.0);
         app.world_mut().entity_mut(link).remove::<Figure>();
         assert_eq!(mesh_of_picture(&mut app), None);
+    }
+
+    #[test]
+    fn figures_become_translucent_and_opaque_again() {
+        let mut app = app();
+        app.world_mut().spawn(figure(1.0));
+        let mut alpha = |is_translucent: bool| {
+            app.insert_resource(RobotLook { is_translucent });
+            app.update();
+            let world = app.world_mut();
+            let mut parts = world.query::<&MeshMaterial3d<Surface>>();
+            let surface = parts.single(world).unwrap().id();
+            let surfaces = world.resource::<Assets<Surface>>();
+            surfaces.get(surface).unwrap().alpha_mode()
+        };
+        let modes = [false, true, false].map(&mut alpha);
+        assert_eq!(
+            modes,
+            [AlphaMode::Opaque, AlphaMode::Blend, AlphaMode::Opaque]
+        );
     }
 
     #[test]

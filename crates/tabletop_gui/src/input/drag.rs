@@ -7,8 +7,8 @@ use bevy::{math::primitives::InfinitePlane3d, prelude::*};
 pub(crate) struct Drag {
     /// The object.
     pub object: Entity,
-    /// The location that it was last asked for.
-    pub target: Vec3,
+    /// The location to which the cursor drags it.
+    pub goal: Vec3,
     /// A point of the plane.
     anchor: Vec3,
     /// The direction at right angles to the plane.
@@ -23,7 +23,7 @@ impl Drag {
     pub fn start(object: Entity, location: Vec3, normal: Vec3, ray: Ray3d) -> Option<Self> {
         Some(Self {
             object,
-            target: location,
+            goal: location,
             anchor: location,
             normal,
             offset: location - meeting_point(ray, location, normal)?,
@@ -31,11 +31,30 @@ impl Drag {
     }
 
     /// The drag after the cursor has moved, where the plane through the object, which is at this location, now has this
-    /// normal. The drag ends where the line of sight misses the square of the plane around the place where it began.
+    /// normal. The drag ends where the line of sight misses the square of the upright plane around the place where it began, and waits
+    /// where it misses that of the level one: the horizon.
     pub fn follow(self, ray: Ray3d, location: Vec3, normal: Vec3, side: f32) -> Option<Self> {
         let drag = self.in_plane(location, normal, ray)?;
-        let target = drag.target_for(ray, side)?;
-        Some(Self { target, ..drag })
+        match drag.goal_for(ray, side) {
+            Some(goal) => Some(Self { goal, ..drag }),
+            None => drag.is_level().then_some(drag),
+        }
+    }
+
+    /// The drag in a plane that is higher by so many units.
+    pub fn raised(self, by: f32, ray: Ray3d) -> Self {
+        let raised = Self::start(self.object, self.goal + Vec3::Z * by, self.normal, ray);
+        raised.unwrap_or(self)
+    }
+
+    /// True if the object is dragged in the level plane.
+    pub fn is_level(&self) -> bool {
+        self.normal.z > 0.5
+    }
+
+    /// True if the object is dragged in the same plane as in another drag, but for its height.
+    pub fn is_parallel_to(&self, other: &Self) -> bool {
+        self.normal == other.normal
     }
 
     /// Goes on from this location in another plane, if it is another.
@@ -48,12 +67,18 @@ impl Drag {
     }
 
     /// The location of the object for this line of sight.
-    fn target_for(&self, ray: Ray3d, side: f32) -> Option<Vec3> {
-        let target = meeting_point(ray, self.anchor, self.normal)? + self.offset;
-        let along = self.normal.cross(Vec3::Z);
-        let from_anchor = target - self.anchor;
-        let distance = from_anchor.dot(along).abs().max(from_anchor.z.abs());
-        (distance <= side / 2.0).then_some(target)
+    fn goal_for(&self, ray: Ray3d, side: f32) -> Option<Vec3> {
+        let goal = meeting_point(ray, self.anchor, self.normal)? + self.offset;
+        let from_anchor = goal - self.anchor;
+        let (along, across) = match self.is_level() {
+            true => (Vec3::X, Vec3::Y),
+            false => (self.normal.cross(Vec3::Z), Vec3::Z),
+        };
+        let distance = from_anchor
+            .dot(along)
+            .abs()
+            .max(from_anchor.dot(across).abs());
+        (distance <= side / 2.0).then_some(goal)
     }
 }
 
@@ -92,10 +117,10 @@ mod tests {
         let location = Vec3::new(2.0, 1.0, 1.0);
         let taken_at = Vec3::new(2.4, 1.0, 1.7);
         let drag = drag(location, taken_at);
-        assert_near(drag.target_for(towards(taken_at), SIDE), location);
+        assert_near(drag.goal_for(towards(taken_at), SIDE), location);
         let moved = Vec3::new(-3.0, 0.0, 4.0);
         assert_near(
-            drag.target_for(towards(taken_at + moved), SIDE),
+            drag.goal_for(towards(taken_at + moved), SIDE),
             location + moved,
         );
     }
@@ -105,7 +130,7 @@ mod tests {
         let location = Vec3::new(2.0, 1.0, 1.0);
         let drag = drag(location, Vec3::new(2.4, 0.0, 1.7));
         for x in [-5.0, 0.0, 5.0] {
-            let target = drag.target_for(towards(Vec3::new(x, -3.0, 3.0)), SIDE);
+            let target = drag.goal_for(towards(Vec3::new(x, -3.0, 3.0)), SIDE);
             assert!((target.unwrap().y - 1.0).abs() < 1e-4);
         }
     }
@@ -117,7 +142,7 @@ mod tests {
         let along = Ray3d::new(EYE, Dir3::X);
         let far_up = towards(Vec3::Z * 100.0);
         for ray in [behind, along, far_up] {
-            assert_eq!(drag.target_for(ray, SIDE), None);
+            assert_eq!(drag.goal_for(ray, SIDE), None);
         }
         assert_eq!(
             Drag::start(Entity::PLACEHOLDER, Vec3::Z, Vec3::Y, behind),
@@ -132,9 +157,24 @@ mod tests {
         let drag = drag(from, from);
         assert_eq!(drag.in_plane(now, Vec3::Y, slanted), Some(drag));
         let other = drag.in_plane(now, Vec3::X, slanted).unwrap();
-        assert_near(other.target_for(slanted, SIDE), now);
+        assert_near(other.goal_for(slanted, SIDE), now);
         let further = Ray3d::new(EYE, Dir3::new(Vec3::new(2.0, 11.0, -3.0)).unwrap());
-        let target = other.target_for(further, SIDE).unwrap();
+        let target = other.goal_for(further, SIDE).unwrap();
         assert!((target.x - now.x).abs() < 1e-4 && target.y > now.y);
+    }
+
+    #[test]
+    fn in_the_level_plane_it_keeps_its_height_and_waits_at_the_horizon() {
+        let location = Vec3::new(2.0, 1.0, 1.0);
+        let drag = Drag::start(Entity::PLACEHOLDER, location, Vec3::Z, towards(location)).unwrap();
+        let moved = Vec3::new(-3.0, 4.0, 0.0);
+        let follow = |drag: Drag, ray| drag.follow(ray, location, Vec3::Z, SIDE).unwrap();
+        let there = follow(drag, towards(location + moved));
+        assert_near(Some(there.goal), location + moved);
+        let above = Ray3d::new(EYE, Dir3::Y);
+        assert_near(Some(follow(there, above).goal), location + moved);
+        let ray = towards(location + moved);
+        let raised = follow(there.raised(0.5, ray), ray);
+        assert_near(Some(raised.goal), location + moved + Vec3::Z * 0.5);
     }
 }

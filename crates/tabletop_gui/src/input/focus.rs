@@ -9,7 +9,7 @@ use bevy_egui::{
     EguiContext, EguiInput, EguiPostUpdateSet, EguiPreUpdateSet, egui,
     helpers::bevy_to_egui_physical_key,
 };
-use tabletop_user::{KeyLetters, KeyboardFocus, Keys};
+use tabletop_user::{Chosen, KeyLetters, KeyboardFocus, Keys};
 
 use crate::display::DisplayDialog;
 
@@ -19,7 +19,8 @@ pub(crate) fn plugin(app: &mut App) {
             PreUpdate,
             (
                 learn_letters.after(InputSystems),
-                keep_bound_keys_from_panels
+                (go_to_panels, keep_bound_keys_from_panels)
+                    .chain()
                     .after(EguiPreUpdateSet::ProcessInput)
                     .before(EguiPreUpdateSet::BeginPass),
             )
@@ -72,12 +73,38 @@ fn keep_bound_keys_from_panels(
         .chain(input.get_just_pressed())
         .filter(|key| keys.meaning(**key).is_some());
     let bound: Vec<_> = bound.filter_map(bevy_to_egui_physical_key).collect();
-    if bound.is_empty() {
-        return;
-    }
     for mut panels in &mut panels {
         panels.events.retain(|event| !is_press_of(event, &bound));
     }
+}
+
+/// Ctrl+Tab goes from widget to widget, as Tab does elsewhere: here Tab goes from object to object. Then keys are the panels'.
+fn go_to_panels(mut panels: Query<&mut EguiInput>, mut chosen: ResMut<Chosen>) {
+    for mut panels in &mut panels {
+        let gone = panels.events.iter_mut().filter_map(plain_tab).count();
+        if gone > 0 {
+            chosen.set_if_neq(Chosen(None));
+        }
+    }
+}
+
+/// Makes Ctrl+Tab plain.
+fn plain_tab(event: &mut egui::Event) -> Option<()> {
+    let egui::Event::Key {
+        key: egui::Key::Tab,
+        pressed: true,
+        modifiers,
+        ..
+    } = event
+    else {
+        return None;
+    };
+    modifiers.ctrl.then(|| {
+        *modifiers = egui::Modifiers {
+            shift: modifiers.shift,
+            ..egui::Modifiers::NONE
+        };
+    })
 }
 
 fn is_press_of(event: &egui::Event, keys: &[egui::Key]) -> bool {
@@ -233,7 +260,16 @@ mod tests {
     #[test]
     fn keys_keep_their_actions_after_tab() {
         let mut keyboard = Keyboard::new();
-        assert_eq!(keyboard.strike(Tab, ""), []);
+        assert_eq!(keyboard.strike(Tab, ""), [Action::NextObject]);
+        assert!(!keyboard.has_egui());
+        keyboard.event(egui::Event::Key {
+            key: egui::Key::Tab,
+            physical_key: Some(egui::Key::Tab),
+            pressed: true,
+            repeat: false,
+            modifiers: egui::Modifiers::CTRL,
+        });
+        keyboard.app.update();
         assert!(keyboard.has_egui());
         assert_eq!(keyboard.strike(Space, " "), [Action::Pause]);
         assert_eq!(keyboard.strike(KeyR, "r"), [Action::ShowRobot]);

@@ -2,7 +2,9 @@
 
 use bevy::prelude::*;
 use tabletop_core::{Actor, ClockCommand, CommandWriter, Paused, Recording};
-use tabletop_user::{Action, Connection, ConnectionOrder, Editing, KeySystems, was_struck};
+use tabletop_user::{
+    Action, Chosen, Connection, ConnectionOrder, Editing, KeySystems, Measuring, was_struck,
+};
 
 use crate::panels::{context_menu::ContextMenu, quit::QuitQuestion};
 
@@ -37,16 +39,25 @@ fn stop(keys: Res<ButtonInput<KeyCode>>, mut orders: MessageWriter<ConnectionOrd
     }
 }
 
-/// Closes the menu that is open, or ends the program; asks before that if a recording runs, or edits are not saved.
+/// Closes the menu that is open, ends measuring, gives up the choice of an object, or ends the program; asks before that if a recording runs, or edits are not saved.
 fn quit(
     mut exit: MessageWriter<AppExit>,
     mut menu: ResMut<ContextMenu>,
+    mut chosen: ResMut<Chosen>,
+    mut measuring: ResMut<Measuring>,
     mut commands: CommandWriter,
     mut question: ResMut<QuitQuestion>,
     recording: Res<Recording>,
     editing: Res<Editing>,
 ) {
-    if !menu.close(&mut commands) && !question.asks(&recording, &editing) {
+    if menu.close(&mut commands) {
+        return;
+    }
+    if measuring.is_on {
+        measuring.switch();
+    } else if chosen.0.is_some() {
+        chosen.0 = None;
+    } else if !question.asks(&recording, &editing) {
         exit.write(AppExit::Success);
     }
 }
@@ -124,6 +135,18 @@ mod tests {
         assert_eq!(app.should_exit(), None);
         let orders = app.world().resource::<Messages<ConnectionOrder>>();
         assert_eq!(orders.iter_current_update_messages().count(), 1);
+    }
+
+    #[test]
+    fn escape_first_gives_up_the_choice_of_an_object() {
+        let mut app = app();
+        let object = app.world_mut().spawn_empty().id();
+        app.insert_resource(Chosen(Some(object)));
+        strike(&mut app, KeyCode::Escape);
+        assert_eq!(app.should_exit(), None);
+        assert_eq!(*app.world().resource::<Chosen>(), Chosen(None));
+        strike(&mut app, KeyCode::Escape);
+        assert_eq!(app.should_exit(), Some(AppExit::Success));
     }
 
     #[test]

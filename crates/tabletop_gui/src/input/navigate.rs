@@ -2,22 +2,18 @@
 //! it drags the scene along, and the wheel or two fingers approach the point under the cursor. The left button is the hands'.
 
 use bevy::{
-    input::{
-        gestures::PinchGesture,
-        mouse::{MouseScrollUnit, MouseWheel},
-    },
+    input::{gestures::PinchGesture, mouse::MouseWheel},
     prelude::*,
 };
 use tabletop_user::{CameraMotion, UserCamera};
 
 use crate::input::{
+    mouse::MousePress,
     pick::Pickable,
     pointer::MouseSystems,
-    pointer::{Pointer, aim},
+    pointer::{Pointer, SLACK, aim},
+    wheel::notches,
 };
-
-/// So far, in pixels, the cursor may move while a button is down, and it is still a click.
-const SLACK: f32 = 4.0;
 
 /// The angle of a pixel's way round, in radians.
 const TURN: f32 = 0.006;
@@ -58,6 +54,7 @@ pub(crate) enum Gesture {
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Gesture>()
+        .init_resource::<MousePress>()
         .init_resource::<Pointer>()
         .add_message::<MouseWheel>()
         .add_message::<PinchGesture>()
@@ -153,13 +150,17 @@ fn zoom(
     mut pinches: MessageReader<PinchGesture>,
     pointer: Res<Pointer>,
     pickable: Pickable,
+    left: Res<MousePress>,
     camera: Single<&Transform, With<UserCamera>>,
     mut motions: MessageWriter<CameraMotion>,
 ) {
     let notches: f32 = wheel.read().map(notches).sum();
     let magnified: f32 = pinches.read().map(|pinch| pinch.0).sum();
     let factor = NOTCH.powf(notches.clamp(-MOST_NOTCHES, MOST_NOTCHES)) * (-magnified).exp();
-    let Some(ray) = pointer.ray.filter(|_| !pointer.is_panels && factor != 1.0) else {
+    let Some(ray) = pointer
+        .ray
+        .filter(|_| !pointer.is_panels && !left.has_wheel() && factor != 1.0)
+    else {
         return;
     };
     let surface = pickable.surface_along(ray);
@@ -167,13 +168,6 @@ fn zoom(
         point: surface.unwrap_or_else(|| before_background(ray, camera.forward())),
         factor,
     });
-}
-
-fn notches(wheel: &MouseWheel) -> f32 {
-    match wheel.unit {
-        MouseScrollUnit::Line => wheel.y,
-        MouseScrollUnit::Pixel => wheel.y / MouseScrollUnit::SCROLL_UNIT_CONVERSION_FACTOR,
-    }
 }
 
 /// A point of a line of sight on which nothing is seen: as deep in the picture as the table's centre.
@@ -221,6 +215,7 @@ mod tests {
     use super::*;
     use crate::test_world::{EYE, TestWorld, towards};
     use MouseButton::{Left, Middle, Right};
+    use bevy::input::mouse::MouseScrollUnit;
 
     /// A world in which the cursor, at these pixels, points at this point.
     fn world() -> TestWorld {

@@ -1,9 +1,10 @@
-//! Picking: the nearest visible surface under the mouse cursor counts. The table and figures hide objects behind them,
-//! but are no objects.
+//! Picking: the nearest visible surface under the mouse cursor counts. The table and figures, unless the user sees through them, hide
+//! objects behind them, but are no objects.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{Figure, ObjectIndex, ObjectSpec, Table};
 use tabletop_geometry::{Pose, Primitive};
+use tabletop_user::RobotLook;
 
 /// Everything that can be seen or hide it.
 #[derive(SystemParam)]
@@ -12,6 +13,7 @@ pub(crate) struct Pickable<'w, 's> {
     objects: Query<'w, 's, (Entity, &'static ObjectSpec, &'static Transform)>,
     tables: Query<'w, 's, &'static Table>,
     figures: Query<'w, 's, (&'static Figure, &'static GlobalTransform)>,
+    look: Option<Res<'w, RobotLook>>,
 }
 
 impl Pickable<'_, '_> {
@@ -46,12 +48,26 @@ impl Pickable<'_, '_> {
         let tables = self.tables.iter();
         let tables =
             tables.filter_map(|table| distance_along(ray, &[table.slab()], Pose::IDENTITY));
-        let figures = self.figures.iter();
-        let figures = figures.filter_map(|(figure, place)| {
+        let is_seen_through = self.look.as_ref().is_some_and(|look| look.is_translucent);
+        let figure = self.figure_along(ray).filter(|_| !is_seen_through);
+        tables.chain(figure).min_by(f32::total_cmp)
+    }
+
+    /// True if a figure is between an eye and a point.
+    pub fn is_behind_figure(&self, eye: Vec3, point: Vec3) -> bool {
+        let Ok(direction) = Dir3::new(point - eye) else {
+            return false;
+        };
+        self.figure_along(Ray3d::new(eye, direction))
+            .is_some_and(|distance| distance < eye.distance(point))
+    }
+
+    fn figure_along(&self, ray: Ray3d) -> Option<f32> {
+        let figures = self.figures.iter().filter_map(|(figure, place)| {
             let place = place.compute_transform();
             figure.coarse.distance_along(ray, (&place).into())
         });
-        tables.chain(figures).min_by(f32::total_cmp)
+        figures.min_by(f32::total_cmp)
     }
 }
 
@@ -140,6 +156,11 @@ mod tests {
         let above = Vec3::Z * 20.0;
         assert_eq!(picked(&mut world, above, Vec3::NEG_Z), None);
         assert_eq!(picked(&mut world, Vec3::Z * 4.0, Vec3::NEG_Z), Some(block));
+        world.insert_resource(RobotLook {
+            is_translucent: true,
+        });
+        assert_eq!(picked(&mut world, above, Vec3::NEG_Z), Some(block));
+        world.remove_resource::<RobotLook>();
         world.despawn(link);
         assert_eq!(picked(&mut world, above, Vec3::NEG_Z), Some(block));
     }

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{Hand, Hands, Paused};
-use tabletop_user::{Action, CameraMotion, DragPlane, Keys, UserCamera};
+use tabletop_user::{Action, CameraMotion, DragPlane, Dragging, Keys, UserCamera};
 
 use crate::input::{mouse::MousePress, pointer::MouseSystems};
 
@@ -37,7 +37,10 @@ fn face_camera(
     let held = hands.held_by(hands.selected);
     let now = held.map(|object| (hands.selected, object));
     if now.is_some() && now != *before {
-        *plane = DragPlane::facing(*camera.forward());
+        *plane = DragPlane {
+            is_level: plane.is_level,
+            ..DragPlane::facing(*camera.forward())
+        };
     }
     *before = now;
 }
@@ -72,12 +75,24 @@ fn turn(
     });
 }
 
-/// While its key is held, the plane at right angles stands in; the camera stays.
-fn swap(keys: Keys, mut plane: ResMut<DragPlane>) {
-    let is_perpendicular = keys.is_held(Action::PlanePerpendicular);
+/// While its key is held, the plane at right angles stands in, or for the level plane the upright one that faces the camera; the camera
+/// stays.
+fn swap(
+    keys: Keys,
+    dragging: Res<Dragging>,
+    camera: Single<&Transform, With<UserCamera>>,
+    mut plane: ResMut<DragPlane>,
+) {
+    let is_level = dragging.is_level && !keys.is_held(Action::PlaneUpright);
+    let is_stood_up = plane.is_level && !is_level;
+    let heading = match is_stood_up {
+        true => DragPlane::facing(*camera.forward()).heading,
+        false => plane.heading,
+    };
     plane.set_if_neq(DragPlane {
-        is_perpendicular,
-        ..*plane
+        heading,
+        is_perpendicular: keys.is_held(Action::PlanePerpendicular),
+        is_level,
     });
 }
 
@@ -90,7 +105,7 @@ fn direction_of_buttons(buttons: PlaneButtons) -> f32 {
 mod tests {
     use super::*;
     use crate::{input::mouse, test_world::TestWorld};
-    use KeyCode::{ControlLeft, ShiftRight, Slash};
+    use KeyCode::{ControlLeft, ShiftLeft, ShiftRight, Slash};
     use bevy::time::TimeUpdateStrategy;
     use std::{f32::consts::FRAC_PI_2, time::Duration};
 
@@ -210,6 +225,31 @@ mod tests {
         test.keys().release(ControlLeft);
         test.hold_still();
         assert!(plane(&test).normal().distance(Vec3::Y) < 1e-6);
+    }
+
+    #[test]
+    fn shift_stands_the_level_plane_up_before_the_camera() {
+        let mut test = holding();
+        test.keys().press(ShiftLeft);
+        test.hold_still();
+        assert!(
+            plane(&test).normal().distance(Vec3::Y) < 1e-6,
+            "upright anyway"
+        );
+        test.keys().release(ShiftLeft);
+        test.app.insert_resource(Dragging {
+            is_level: true,
+            ..default()
+        });
+        test.hold_still();
+        assert!(plane(&test).normal().distance(Vec3::Z) < 1e-6);
+        look_along(&mut test, Vec3::new(1.0, 0.0, -1.0));
+        test.keys().press(ShiftLeft);
+        test.hold_still();
+        assert!(plane(&test).normal().distance(Vec3::X) < 1e-6);
+        test.keys().release(ShiftLeft);
+        test.hold_still();
+        assert!(plane(&test).normal().distance(Vec3::Z) < 1e-6);
     }
 
     #[test]

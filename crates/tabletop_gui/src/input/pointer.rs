@@ -4,6 +4,9 @@ use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui, input::EguiWantsInput};
 use tabletop_user::UserCamera;
 
+/// So far, in pixels, the cursor may move while a button is down, and it is still a click.
+pub(crate) const SLACK: f32 = 4.0;
+
 /// Reading the mouse, once a frame before its ticks.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MouseSystems;

@@ -31,6 +31,21 @@ impl TurnSums {
             degrees: (*sum - before) as f32,
         })
     }
+
+    /// Turns on by these degrees, and returns the turn, if it is one. Sums go round at half a turn.
+    pub fn turn_by(&mut self, hand: Hand, axis: usize, degrees: i32) -> Option<HandCommand> {
+        let sum = &mut self.0[hand as usize][axis];
+        let on = *sum + degrees;
+        *sum = match on.abs() > MAX_DEGREES {
+            true => on - 2 * MAX_DEGREES * on.signum(),
+            false => on,
+        };
+        (degrees != 0).then(|| HandCommand::Turn {
+            hand,
+            axis: AXES[axis],
+            degrees: degrees as f32,
+        })
+    }
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -95,6 +110,16 @@ mod tests {
         assert_eq!(turns.turn_to(Hand::Any, 2, 181), None);
         let back = turns.turn_to(Hand::Any, 2, -225);
         assert_eq!(degrees_of(back), Some(-360.0));
+    }
+
+    #[test]
+    fn turns_by_keys_go_round() {
+        let mut turns = TurnSums::default();
+        for (by, sum) in [(170, 170), (20, -170), (-15, 175), (0, 175)] {
+            let turned = degrees_of(turns.turn_by(Hand::Any, 1, by));
+            assert_eq!(turned, (by != 0).then_some(by as f32));
+            assert_eq!(turns.of(Hand::Any), [0, sum, 0]);
+        }
     }
 
     #[test]

@@ -35,6 +35,12 @@ impl Panels {
         self.open.contains(&panel)
     }
 
+    /// The open panels, from the top of the stack downwards.
+    pub(crate) fn open_in_order(&self) -> Vec<Panel> {
+        let stack = self.stack.iter().copied();
+        stack.filter(|&panel| self.is_open(panel)).collect()
+    }
+
     /// Opens or closes a panel. One that is opened gets the place below those that are open, unless it has one beside them.
     pub fn set_open(&mut self, panel: Panel, is_open: bool) {
         if !is_open {
@@ -189,27 +195,28 @@ mod tests {
     fn a_panel_that_fits_below_an_earlier_column_goes_there() {
         let panels = Panels::default();
         let size = |panel: Panel| match panel {
-            Panel::Robot => vec2(300.0, 400.0),
+            Panel::Robot => vec2(300.0, 500.0),
             Panel::Timeline => vec2(500.0, 100.0),
             Panel::Status
             | Panel::Camera
             | Panel::DemonstrationTools
+            | Panel::Pose
             | Panel::Objects
-            | Panel::Messages => vec2(300.0, 150.0),
+            | Panel::Messages => vec2(300.0, 120.0),
         };
         let place = |panel| panels.place(panel, DESK, size);
-        let below = |rows: f32| GAP + rows * (150.0 + GAP);
+        let below = |rows: f32| GAP + rows * (120.0 + GAP);
         assert_eq!(place(Panel::Camera), pos2(GAP, below(1.0)));
         let second = GAP + 300.0 + GAP;
         assert_eq!(place(Panel::Robot), pos2(second, GAP));
         assert_eq!(place(Panel::DemonstrationTools), pos2(GAP, below(2.0)));
-        let under_robot = GAP + 400.0 + GAP;
+        let under_robot = GAP + 500.0 + GAP;
         assert_eq!(
             place(Panel::Timeline),
             pos2(second, under_robot),
             "too wide for the first"
         );
-        assert_eq!(place(Panel::Objects), pos2(GAP, below(3.0)));
+        assert_eq!(place(Panel::Objects), pos2(GAP, below(4.0)));
     }
 
     #[test]

@@ -14,9 +14,10 @@ use crate::{
         arrangement::Panels, display::DisplayOverlay, help::Help, messages::Notices, panel::Panel,
     },
     scale::{ScaleStep, UiScale},
+    theme::Theme,
     widgets::{
         icon::{Icon, icon_button},
-        style::FAULT,
+        style::ThemeColors,
     },
 };
 
@@ -31,6 +32,7 @@ struct Model<'a> {
     /// The scale at which everything is drawn.
     scale: f32,
     keymap: &'a Keymap,
+    theme: Theme,
     /// True if the display has settings.
     has_display: bool,
 }
@@ -43,6 +45,7 @@ enum Request {
     Align,
     HideAll,
     Scale(ScaleStep),
+    Theme(Theme),
     Display,
     Help,
 }
@@ -67,6 +70,7 @@ fn show_bar(
     notices: Res<Notices>,
     keymap: Res<Keymap>,
     mut scale: ResMut<UiScale>,
+    mut theme: ResMut<Theme>,
     offer: Option<Res<DisplayOffer>>,
     mut display: ResMut<DisplayOverlay>,
     mut help: ResMut<Help>,
@@ -79,6 +83,7 @@ fn show_bar(
         unseen_faults: notices.unseen_faults().count(),
         scale: context.zoom_factor(),
         keymap: &keymap,
+        theme: *theme,
         has_display: offer.is_some(),
     };
     if let Some(request) = show(context, &model) {
@@ -87,6 +92,7 @@ fn show_bar(
             context,
             &mut panels,
             &mut scale,
+            &mut theme,
             &mut display,
             &mut help,
         );
@@ -98,6 +104,7 @@ fn carry_out(
     context: &Context,
     panels: &mut Panels,
     scale: &mut UiScale,
+    theme: &mut Theme,
     display: &mut DisplayOverlay,
     help: &mut Help,
 ) {
@@ -110,6 +117,7 @@ fn carry_out(
         Request::Align => panels.align(),
         Request::HideAll => panels.set_all_open(false),
         Request::Scale(step) => scale.change(step, context.zoom_factor()),
+        Request::Theme(wished) => *theme = wished,
         Request::Display => display.open(),
         Request::Help => help.toggle(),
     }
@@ -167,6 +175,13 @@ fn buttons(ui: &mut Ui, model: &Model) -> Option<Request> {
         button(text, action, step.name(), Request::Scale(step));
     }
     button("?", Action::ShowHelp, "Help", Request::Help);
+    let other = model.theme.other();
+    let button = ui.button(other.label());
+    let button = button.on_hover_text(format!(
+        "Show the windows in {} colours",
+        other.label().to_lowercase()
+    ));
+    when(button.clicked(), Request::Theme(other));
     if model.has_display {
         let display = ui.button("Display");
         let display = display.on_hover_text("Resolution, full screen, refresh rate, anti-aliasing");
@@ -178,7 +193,8 @@ fn buttons(ui: &mut Ui, model: &Model) -> Option<Request> {
 fn panel_button(ui: &mut Ui, panel: Panel, model: &Model) -> bool {
     let mut text = RichText::new(panel.label());
     if panel == Panel::Messages && model.unseen_faults > 0 {
-        text = RichText::new(format!("{} ({})", panel.label(), model.unseen_faults)).color(FAULT);
+        text = RichText::new(format!("{} ({})", panel.label(), model.unseen_faults))
+            .color(ThemeColors::of(ui.visuals()).fault);
     }
     let is_open = model.panels.is_open(panel);
     let button = ui.add(Button::new(text).selected(is_open));
@@ -212,6 +228,7 @@ mod tests {
                 unseen_faults: stage.unseen_faults,
                 scale: 1.25,
                 keymap: &stage.keymap,
+                theme: Theme::Dark,
                 has_display: true,
             };
             let request = show(ui.ctx(), &model);
@@ -294,6 +311,7 @@ mod tests {
         let context = Context::default();
         let mut panels = Panels::default();
         let mut scale = UiScale::default();
+        let mut theme = Theme::default();
         let mut display = DisplayOverlay::default();
         let mut help = Help::default();
         let mut carried_out = |request| {
@@ -302,6 +320,7 @@ mod tests {
                 &context,
                 &mut panels,
                 &mut scale,
+                &mut theme,
                 &mut display,
                 &mut help,
             );
@@ -317,9 +336,16 @@ mod tests {
             assert!(open[..=i].iter().all(|&is_open| is_open));
             assert!(open[i + 1..].iter().all(|&is_open| !is_open));
         }
+        carried_out(Request::Theme(Theme::Light));
         carried_out(Request::Display);
         carried_out(Request::Help);
         assert!(display.is_open() && help.is_open());
+        assert_eq!(theme, Theme::Light);
+    }
+
+    #[test]
+    fn the_other_theme_is_asked_for() {
+        assert_eq!(clicked("Light"), Some(Request::Theme(Theme::Light)));
     }
 
     #[test]

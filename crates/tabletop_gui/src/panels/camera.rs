@@ -8,12 +8,12 @@ use bevy_egui::{
         self, Align2, Button, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_user::{Action, CameraMotion, CameraView, Keymap, Steering};
+use tabletop_user::{Action, CameraMotion, CameraView, Keymap, RobotLook, Steering};
 
 use crate::{
     files::FileRequest,
     panels::{Panel, Panels},
-    widgets::style::ACCENT,
+    widgets::{button::switch, style::ACCENT},
 };
 
 /// Sides of a pad in points.
@@ -40,6 +40,8 @@ struct Request {
     steering: Steering,
     /// The button that was pressed.
     view: Option<CameraView>,
+    /// True if the robot is to be shown the other way.
+    changes_robot: bool,
     /// A picture of so many columns and rows is to be saved.
     picture: Option<[u32; 2]>,
 }
@@ -67,32 +69,41 @@ fn show_panel(
     mut motions: MessageWriter<CameraMotion>,
     mut files: MessageWriter<FileRequest>,
     mut size: Local<PictureSize>,
+    mut robot: ResMut<RobotLook>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    let shown = Panel::Camera.show(context, &mut panels, |ui| show(ui, &keymap, &mut size));
+    let shown = Panel::Camera.show(context, &mut panels, |ui| {
+        show(ui, &keymap, *robot, &mut size)
+    });
     let request = shown.unwrap_or_default();
     steering.set_if_neq(request.steering);
     if let Some(view) = request.view {
         motions.write(CameraMotion::Look(view));
+    }
+    if request.changes_robot {
+        robot.is_translucent = !robot.is_translucent;
     }
     if let Some(size) = request.picture {
         files.write(FileRequest::AskForPicture(size));
     }
 }
 
-fn show(ui: &mut Ui, keymap: &Keymap, size: &mut PictureSize) -> Request {
+fn show(ui: &mut Ui, keymap: &Keymap, robot: RobotLook, size: &mut PictureSize) -> Request {
     let steering = ui.horizontal(|ui| steering(ui, keymap)).inner;
     if steering != Steering::default() {
         // It goes on moving while nothing else changes.
         ui.ctx().request_repaint();
     }
     let view = ui.horizontal_wrapped(|ui| views(ui, keymap)).inner;
+    let tooltip = "Show what is behind the robot, and let the mouse reach it";
+    let robot = switch(ui, robot.is_translucent, "See through the robot", tooltip);
     let picture = ui.horizontal(|ui| picture(ui, size)).inner;
     Request {
         steering,
         view,
+        changes_robot: robot.clicked(),
         picture,
     }
 }
@@ -237,6 +248,10 @@ fn words_for(view: CameraView, keymap: &Keymap) -> (&'static str, String) {
         CameraView::Start => ("Start", with_key(Action::ViewStart)),
         CameraView::Top => ("Top", with_key(Action::ViewTop)),
         CameraView::Front => ("Front", with_key(Action::ViewFront)),
+        CameraView::Across => (
+            "Across",
+            "Looks at the table from its other side, where the robot hides nothing".into(),
+        ),
         CameraView::RobotEye => ("Robot's eye", with_key(Action::ViewRobotEye)),
         CameraView::Center => (
             "Centre",
@@ -254,10 +269,15 @@ mod tests {
     fn harness() -> Harness<'static, Request> {
         let keymap = Keymap::default();
         let frame = move |ui: &mut Ui, request: &mut Request| {
-            *request = show(ui, &keymap, &mut PictureSize::default())
+            *request = show(
+                ui,
+                &keymap,
+                RobotLook::default(),
+                &mut PictureSize::default(),
+            )
         };
         let mut harness = Harness::new_ui_state(frame, Request::default());
-        harness.set_size(vec2(360.0, 240.0));
+        harness.set_size(vec2(400.0, 320.0));
         harness.run();
         harness
     }
@@ -279,6 +299,14 @@ mod tests {
         harness.get_by_label("Save picture…").click();
         harness.step();
         assert_eq!(harness.state().picture, Some([1600, 1200]));
+    }
+
+    #[test]
+    fn the_robot_is_made_translucent() {
+        let mut harness = harness();
+        harness.get_by_label("See through the robot").click();
+        harness.step();
+        assert!(harness.state().changes_robot);
     }
 
     #[test]
@@ -344,6 +372,7 @@ mod tests {
             ("Start", CameraView::Start),
             ("Top", CameraView::Top),
             ("Front", CameraView::Front),
+            ("Across", CameraView::Across),
             ("Robot's eye", CameraView::RobotEye),
             ("Centre", CameraView::Center),
         ] {

@@ -14,13 +14,13 @@ const fn column_of(group: ActionGroup) -> usize {
         | ActionGroup::Demonstration
         | ActionGroup::Objects
         | ActionGroup::Window => 0,
-        ActionGroup::Camera | ActionGroup::Robot => 1,
+        ActionGroup::Camera | ActionGroup::Chosen | ActionGroup::Robot => 1,
         ActionGroup::Limb(_) => 2,
     }
 }
 
 /// The actions of the mouse beside the panels.
-const MOUSE: [(&str, &str, &str); 6] = [
+const MOUSE: [(&str, &str, &str); 8] = [
     (
         "click",
         "Take an object",
@@ -30,6 +30,16 @@ const MOUSE: [(&str, &str, &str); 6] = [
         "drag",
         "Move what is held",
         "The held object moves in the blue plane",
+    ),
+    (
+        "drag an object",
+        "Take, move, let go",
+        "If Along the table is on in Pose and Dragging; the wheel raises the object",
+    ),
+    (
+        "drag an arrow",
+        "Turn what is held",
+        "The held object turns about the axis whose arrow is dragged",
     ),
     (
         "press elsewhere",

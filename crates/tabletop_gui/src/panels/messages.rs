@@ -19,12 +19,16 @@ use crate::{
     widgets::{
         button::{button, switch},
         clipboard::Clipboard,
+        style::ThemeColors,
     },
 };
 use rows::Rows;
 
 /// Height of the list in points, until the user changes it.
 const LIST_HEIGHT: f32 = 180.0;
+
+/// Width of the column of times, in letters.
+const TIME_LETTERS: f32 = 9.0;
 
 /// The notices that the list shows.
 #[derive(Resource, Clone, Debug)]
@@ -153,11 +157,11 @@ fn show_panel(
     }
 }
 
-/// The text of the list, a notice below the other.
+/// The text of the list, a notice below the other, each with its time.
 fn text(notices: &Notices, list: &MessageList) -> String {
     let shown = notices.all().filter(|notice| list.shows(notice));
     shown
-        .flat_map(|notice| [notice.text.as_str(), "\n"])
+        .map(|notice| format!("{} {}\n", notice.time(), notice.text))
         .collect()
 }
 
@@ -205,10 +209,12 @@ fn rows(ui: &mut Ui, notices: &Notices, list: &mut MessageList, sought: Option<u
         let letter = fonts.glyph_width(&font, '0');
         (letter, fonts.row_height(&font))
     });
-    ui.spacing_mut().item_spacing.y = 0.0;
+    ui.spacing_mut().item_spacing = egui::Vec2::ZERO;
+    ui.spacing_mut().interact_size.y = height;
     ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
     let bar = ui.spacing().scroll.allocated_width();
-    let columns = ((ui.available_width() - bar) / letter).floor() as usize;
+    let room = ui.available_width() - bar - TIME_LETTERS * letter;
+    let columns = (room / letter).floor() as usize;
     let rows = list.rows.of(notices, list.tones, columns);
     let mut scroll = ScrollArea::vertical()
         .auto_shrink(false)
@@ -222,9 +228,18 @@ fn rows(ui: &mut Ui, notices: &Notices, list: &mut MessageList, sought: Option<u
     scroll.show_rows(ui, height, rows.len(), |ui, seen| {
         for row in rows.get(seen).unwrap_or_default() {
             if let Some(notice) = notice_of(row) {
+                let color = notice.tone.color(ThemeColors::of(ui.visuals()));
                 let text = RichText::new(&notice.text[row.part.clone()]);
-                let text = text.font(font.clone()).color(notice.tone.color());
-                ui.add(Label::new(text).extend().selectable(true));
+                let text = text.font(font.clone()).color(color);
+                ui.horizontal(|ui| {
+                    let from = ui.cursor().left();
+                    if row.part.start == 0 {
+                        let time = RichText::new(notice.time()).font(font.clone());
+                        ui.add(Label::new(time.weak()).selectable(false));
+                    }
+                    ui.add_space(from + TIME_LETTERS * letter - ui.cursor().left());
+                    ui.add(Label::new(text).extend().selectable(true));
+                });
             }
         }
     });

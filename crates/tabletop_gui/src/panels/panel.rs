@@ -16,6 +16,8 @@ pub enum Panel {
     Robot,
     /// Hands, rotations and recording.
     DemonstrationTools,
+    /// The pose of what is held, and how the mouse drags.
+    Pose,
     /// Task files and presets.
     Objects,
     /// The recording that is made or open, along its time.
@@ -26,11 +28,12 @@ pub enum Panel {
 
 impl Panel {
     /// The panels in the order of their buttons, and from the top downwards when they are aligned.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Status,
         Self::Camera,
         Self::Robot,
         Self::DemonstrationTools,
+        Self::Pose,
         Self::Objects,
         Self::Timeline,
         Self::Messages,
@@ -43,6 +46,7 @@ impl Panel {
             Self::Camera => "Camera",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demo Tools",
+            Self::Pose => "Pose",
             Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
@@ -56,6 +60,7 @@ impl Panel {
             Self::Camera => "Camera Navigation",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demonstration Tools",
+            Self::Pose => "Pose and Dragging",
             Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
@@ -71,6 +76,7 @@ impl Panel {
             Self::DemonstrationTools => {
                 "Hands, held objects and their turns; record, undo and redo"
             }
+            Self::Pose => "Read and type where the held object is; choose how the mouse drags",
             Self::Objects => "Load and save task files; make objects, and clear the table",
             Self::Messages => "All messages so far, each with its place",
             Self::Timeline => "The recording along its time; step, play slowly or fast",
@@ -84,6 +90,7 @@ impl Panel {
             | Self::Camera
             | Self::Robot
             | Self::DemonstrationTools
+            | Self::Pose
             | Self::Objects => 304.0,
             Self::Messages => 340.0,
             Self::Timeline => 640.0,

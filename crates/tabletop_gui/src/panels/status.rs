@@ -14,7 +14,7 @@ use tabletop_core::{
 use crate::{
     PictureStatus,
     panels::{Panel, Panels},
-    widgets::style::WARNING,
+    widgets::style::ThemeColors,
 };
 
 /// The time over which speeds are averaged.
@@ -143,6 +143,8 @@ fn follow_recording(mut facts: MessageReader<SimFact>, tick: Res<SimTick>, mut t
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Model {
     mean: Means,
+    /// True if nothing moves in the picture.
+    is_still: bool,
     /// The simulated time.
     tick: SimTick,
     is_paused: bool,
@@ -179,6 +181,7 @@ struct Sources<'w> {
     replaying: Res<'w, Replaying>,
     take: Res<'w, Take>,
     history: Res<'w, History>,
+    picture: Res<'w, PictureStatus>,
     renderer: Option<Res<'w, Renderer>>,
 }
 
@@ -186,6 +189,7 @@ impl Sources<'_> {
     fn model(&self) -> Model {
         Model {
             mean: self.speed.mean,
+            is_still: self.picture.is_still,
             tick: self.clock.tick,
             is_paused: self.paused.0,
             agent: self.agent.clone(),
@@ -222,15 +226,17 @@ fn show_panel(mut contexts: EguiContexts, mut panels: ResMut<Panels>, sources: S
 fn show(ui: &mut Ui, model: &Model) {
     ui.spacing_mut().interact_size.y = ROW_HEIGHT;
     ui.spacing_mut().item_spacing.y = 2.0;
-    row(ui, "FPS", format!("{:03.0}", model.mean.fps));
+    row(ui, "FPS", frames(model));
     row(ui, "Simulated", simulated(model));
     row(ui, "Matlab", matlab(&model.agent, model.mean.call));
     row(ui, "Recording", recording(&model.film));
-    if matches!(model.film, FilmState::Recorded { .. }) || model.history.undoable > 0 {
-        row(ui, "Undo", undo(&model.history));
-    }
+    row(ui, "Undo", undo(&model.history));
     if let Some(renderer) = &model.renderer {
-        row(ui, "Renderer", words_for(renderer));
+        row(
+            ui,
+            "Renderer",
+            words_for(renderer, ThemeColors::of(ui.visuals())),
+        );
     }
 }
 
@@ -241,6 +247,14 @@ fn row(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
         ui.add_space(cursor + NAME_WIDTH - ui.cursor().left());
         ui.add(Label::new(value.into()).truncate());
     });
+}
+
+/// Pictures a second. Of a still picture their number says nothing.
+fn frames(model: &Model) -> String {
+    match model.is_still {
+        true => "at rest".into(),
+        false => format!("{:03.0}", model.mean.fps),
+    }
 }
 
 fn simulated(model: &Model) -> String {
@@ -294,9 +308,11 @@ fn undo(history: &History) -> String {
     }
 }
 
-fn words_for(renderer: &Renderer) -> RichText {
+fn words_for(renderer: &Renderer, colors: &ThemeColors) -> RichText {
     match renderer.is_software {
-        true => RichText::new(format!("software renderer ({})", renderer.name)).color(WARNING),
+        true => {
+            RichText::new(format!("software renderer ({})", renderer.name)).color(colors.warning)
+        }
         false => renderer.name.as_str().into(),
     }
 }
@@ -436,10 +452,11 @@ mod tests {
     fn at_rest_nothing_is_recorded_and_time_stands() {
         let model = Model {
             is_paused: true,
+            is_still: true,
             ..default()
         };
         let harness = Harness::new_ui(move |ui| show(ui, &model));
-        for value in ["000", "0.0 s, paused", "not recording"] {
+        for value in ["at rest", "0.0 s, paused", "not recording"] {
             assert!(harness.query_by_label(value).is_some(), "{value}");
         }
         assert!(harness.query_by_label("Renderer").is_none());
@@ -453,6 +470,7 @@ mod tests {
             .init_resource::<Speed>()
             .init_resource::<Clock>()
             .init_resource::<Take>()
+            .init_resource::<PictureStatus>()
             .add_systems(Update, follow_recording);
         app.insert_resource(SimTick(100));
         app.world_mut()

@@ -14,7 +14,7 @@ use crate::{
         Panel, Panels,
         messages::{MessageList, Notice, Notices, Tone},
     },
-    widgets::style::{GAP, MARGIN},
+    widgets::style::{GAP, MARGIN, ThemeColors},
 };
 
 /// The most that are shown. The newest ones count.
@@ -118,7 +118,7 @@ fn show(context: &Context, toasts: &Toasts) -> Option<u64> {
 }
 
 fn show_notice(ui: &mut Ui, notice: &Notice) -> Response {
-    let color = notice.tone.color();
+    let color = notice.tone.color(ThemeColors::of(ui.visuals()));
     let frame = Frame::window(ui.style()).inner_margin(MARGIN);
     let shown = frame.show(ui, |ui| {
         ui.set_width(WIDTH);

@@ -13,7 +13,7 @@ use crate::{
     },
     widgets::{
         icon::{Icon, icon_button},
-        style::{ACCENT, CORNER, MARGIN, TITLE},
+        style::{ACCENT, CORNER, MARGIN, ThemeColors},
     },
 };
 
@@ -22,6 +22,12 @@ const TITLE_HEIGHT: f32 = 26.0;
 
 /// Height of a panel that has not been seen yet.
 const UNKNOWN_HEIGHT: f32 = 160.0;
+
+/// The name of the order of the panels in egui's memory.
+const ARRANGED: &str = "arranged";
+
+/// The time in which the panels find their sizes after one is opened, in seconds.
+const SETTLING_SECONDS: f64 = 0.5;
 
 /// Duration, in seconds, and thickness, in points, of a panel's flashing border.
 const FLASH_SECONDS: f64 = 0.4;
@@ -39,7 +45,9 @@ impl Panel {
             return None;
         }
         let desk = desk(context);
-        let place = panels.place(self, desk, |panel| panel.size(context));
+        note_order(context, panels);
+        let place = panels.place(self, desk, |panel| panel.reserved(context));
+        let place = kept_on(desk, place, self.size(context));
         let highest = desk.height() - TITLE_HEIGHT - 2.0 * f32::from(MARGIN);
         let area = Area::new(self.id()).fixed_pos(place).constrain(false);
         let window = area.show(context, |ui| {
@@ -100,9 +108,34 @@ impl Panel {
         seen.map_or(vec2(self.outer_width(), UNKNOWN_HEIGHT), |rect| rect.size())
     }
 
+    /// The size for which it has its place among the others: its own, until all have settled. So no panel jumps when another grows.
+    fn reserved(self, context: &Context) -> Vec2 {
+        let id = self.id().with("reserved");
+        let now = context.input(|input| input.time);
+        let arranged: Option<Arranged> = context.data(|data| data.get_temp(Id::new(ARRANGED)));
+        let has_settled = arranged.is_some_and(|arranged| now > arranged.at + SETTLING_SECONDS);
+        let reserved = context
+            .data(|data| data.get_temp(id))
+            .filter(|_| has_settled);
+        reserved.unwrap_or_else(|| {
+            let size = self.size(context);
+            context.data_mut(|data| data.insert_temp(id, size));
+            size
+        })
+    }
+
+    /// Width inside the border.
+    fn inner_width(self, context: &Context) -> f32 {
+        let border = 2.0 * context.global_style().visuals.window_stroke.width;
+        self.outer_width().max(self.size(context).x - border)
+    }
+
     fn title_bar(self, ui: &mut Ui, place: Pos2, desk: Rect) -> Option<Handled> {
         let size = vec2(self.outer_width(), TITLE_HEIGHT);
-        let (rect, bar) = ui.allocate_exact_size(size, Sense::DRAG);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        // As wide as the contents were last, which may need more room than the panel has.
+        let rect = rect.with_max_x(rect.left() + self.inner_width(ui.ctx()));
+        let bar = ui.interact(rect, self.id().with("title bar"), Sense::DRAG);
         bar.widget_info(|| {
             WidgetInfo::labeled(WidgetType::Other, true, format!("Move {}", self.title()))
         });
@@ -111,7 +144,8 @@ impl Panel {
             ne: CORNER,
             ..CornerRadius::ZERO
         };
-        ui.painter().rect_filled(rect, corners, TITLE);
+        ui.painter()
+            .rect_filled(rect, corners, ThemeColors::of(ui.visuals()).title);
         let font = TextStyle::Button.resolve(ui.style());
         let color = ui.visuals().strong_text_color();
         let text = self.title();
@@ -151,6 +185,26 @@ impl Panel {
             ui.ctx().request_repaint();
         }
     }
+}
+
+/// The order of the panels, and when it last changed, in seconds.
+#[derive(Clone, Debug, PartialEq)]
+struct Arranged {
+    order: Vec<Panel>,
+    at: f64,
+}
+
+/// Notes when panels are opened, closed or aligned, or the desk changes.
+fn note_order(context: &Context, panels: &Panels) {
+    let order = panels.open_in_order();
+    let at = context.input(|input| input.time);
+    context.data_mut(|data| {
+        let id = Id::new(ARRANGED);
+        let noted: Option<Arranged> = data.get_temp(id);
+        if noted.is_none_or(|noted| noted.order != order) {
+            data.insert_temp(id, Arranged { order, at });
+        }
+    });
 }
 
 /// The user's action on a title bar.
@@ -254,6 +308,42 @@ mod tests {
     }
 
     #[test]
+    fn no_panel_jumps_when_another_grows() {
+        let show = |ui: &mut Ui, (panels, lines): &mut (Panels, usize)| {
+            for panel in [Panel::Status, Panel::Robot] {
+                panel.show(ui.ctx(), panels, |ui| {
+                    for line in 0..*lines {
+                        ui.label(format!("{panel:?} {line}"));
+                    }
+                });
+            }
+        };
+        let mut panels = Panels::default();
+        panels.set_open(Panel::Robot, true);
+        let mut harness = Harness::builder()
+            .with_size(SIZE)
+            .with_step_dt(0.1)
+            .build_ui_state(show, (panels, 2));
+        harness.run_steps(10);
+        let place = |harness: &Harness<(Panels, usize)>| {
+            let title = harness.get_by_label("Move Robot").rect();
+            let status = harness.get_by_label("Status").rect();
+            (title.min, status.bottom())
+        };
+        let (before, bottom) = place(&harness);
+        assert!(before.y > bottom, "below the other");
+        harness.state_mut().1 = 5;
+        harness.run_steps(10);
+        assert_eq!(place(&harness).0, before);
+        harness.state_mut().0.set_open(Panel::Robot, false);
+        harness.run_steps(10);
+        harness.state_mut().0.set_open(Panel::Robot, true);
+        harness.run_steps(10);
+        let (anew, bottom) = place(&harness);
+        assert!(anew.y > bottom, "below the other again");
+    }
+
+    #[test]
     fn the_cross_hides_each_panel() {
         for panel in Panel::ALL {
             let mut harness = harness();
@@ -274,6 +364,27 @@ mod tests {
         drag(&mut harness, grip, grip + vec2(200.0, 100.0));
         let after = top_left(&harness, Panel::Status);
         assert_eq!(after, before + vec2(200.0, 100.0));
+    }
+
+    #[test]
+    fn the_title_bar_is_as_wide_as_wide_contents_with_the_cross_at_its_right() {
+        let show = |ui: &mut Ui, (panels, width): &mut (Panels, f32)| {
+            let content = |ui: &mut Ui| ui.allocate_space(vec2(*width, 50.0));
+            Panel::Status.show(ui.ctx(), panels, content);
+        };
+        let mut harness = Harness::builder()
+            .with_size(SIZE)
+            .build_ui_state(show, (Panels::default(), 500.0));
+        for width in [500.0, 100.0] {
+            harness.state_mut().1 = width;
+            harness.run_steps(3);
+            let window = harness.get_by_label("Status").rect();
+            let bar = harness.get_by_label("Move Status").rect();
+            assert!((window.width() - bar.width()).abs() < 4.0, "{window} {bar}");
+            let cross = harness.get_by_label("Hide Status").rect();
+            assert!(window.right() - cross.right() < 6.0, "{window} {cross}");
+            assert!(window.contains_rect(cross), "{window} {cross}");
+        }
     }
 
     #[test]

@@ -53,6 +53,46 @@ pub enum Action {
     PlaneClockwise,
     /// Show the perpendicular plane while held down.
     PlanePerpendicular,
+    /// Show the upright plane in place of the level one while held down.
+    PlaneUpright,
+    /// Choose the next object for the keyboard.
+    NextObject,
+    /// Choose the object before the chosen one.
+    PreviousObject,
+    /// Take the chosen object, or let it go.
+    TakeOrRelease,
+    /// Move the chosen object to the viewer's left.
+    ObjectLeft,
+    /// Move the chosen object to the viewer's right.
+    ObjectRight,
+    /// Move the chosen object away from the viewer.
+    ObjectAway,
+    /// Move the chosen object towards the viewer.
+    ObjectNearer,
+    /// Raise the chosen object.
+    ObjectUp,
+    /// Lower the chosen object.
+    ObjectDown,
+    /// Turn the chosen object counterclockwise as seen from above.
+    TurnLeft,
+    /// Turn the chosen object clockwise as seen from above.
+    TurnRight,
+    /// Tip the chosen object away from the viewer.
+    TipAway,
+    /// Tip the chosen object towards the viewer.
+    TipNearer,
+    /// Roll the chosen object to the viewer's left.
+    RollLeft,
+    /// Roll the chosen object to the viewer's right.
+    RollRight,
+    /// Act with the left hand.
+    HandLeft,
+    /// Act with the right hand.
+    HandRight,
+    /// Act with both hands.
+    HandBoth,
+    /// Act with whichever hand is free.
+    HandAny,
     /// Discard the present segment of the recording (report section 4.1), or take back the last edit of the open one.
     Undo,
     /// Bring back the segment or edit that was undone last.

@@ -16,6 +16,7 @@ pub enum ActionGroup {
     Simulation,
     Camera,
     Demonstration,
+    Chosen,
     Objects,
     Robot,
     Limb(LimbId),
@@ -29,6 +30,8 @@ pub enum Situation {
     Any,
     /// While the selected hand holds something. Its keys then come before those of [`Any`](Self::Any).
     Holding,
+    /// While an object is [chosen](crate::Chosen). Its keys then come before all others.
+    Choosing,
 }
 
 /// A row of the table of actions.
@@ -49,6 +52,14 @@ impl ActionRow {
     fn continuous(self) -> Self {
         Self {
             is_continuous: true,
+            ..self
+        }
+    }
+
+    /// Makes it an action on the chosen object.
+    fn while_choosing(self) -> Self {
+        Self {
+            situation: Situation::Choosing,
             ..self
         }
     }
@@ -84,12 +95,13 @@ pub(super) fn rows(layout: &RobotLayout) -> (Vec<ActionRow>, Vec<JointKeyError>)
 
 /// The groups of a robot's actions with their names, in the order in which they are listed.
 pub(super) fn groups(layout: &RobotLayout) -> Vec<(ActionGroup, String)> {
-    use ActionGroup::{Camera, Demonstration, Objects, Robot, Simulation, Window};
+    use ActionGroup::{Camera, Chosen, Demonstration, Objects, Robot, Simulation, Window};
     let named = |group, name: &str| (group, name.to_owned());
     let mut groups = vec![
         named(Simulation, "Simulation"),
         named(Camera, "Camera"),
         named(Demonstration, "Demonstration"),
+        named(Chosen, "Chosen object"),
         named(Objects, "Objects"),
         named(Robot, "Robot"),
     ];
@@ -128,7 +140,7 @@ fn row(
 /// The actions that move no joint.
 #[rustfmt::skip]
 fn plain_rows() -> Vec<ActionRow> {
-    use ActionGroup::{Camera, Demonstration, Objects, Robot, Simulation, Window};
+    use ActionGroup::{Camera, Chosen, Demonstration, Objects, Robot, Simulation, Window};
     vec![
         row(Action::Pause, Simulation, "Pause, resume", "Stops the simulation, or lets it run on", vec![plain(Space)]),
         row(Action::Step, Simulation, "One step", "Pauses, and simulates a sixtieth of a second", vec![plain(Period)]),
@@ -154,6 +166,11 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::PlaneCounterClockwise, Demonstration, "Plane CCW", "Turns the drag plane counterclockwise", vec![plain(Slash)]).continuous().while_holding(),
         row(Action::PlaneClockwise, Demonstration, "Plane CW", "Turns the drag plane clockwise", vec![shift(Slash)]).continuous().while_holding(),
         row(Action::PlanePerpendicular, Demonstration, "Plane at right angles", "Shows the perpendicular drag plane", vec![plain(ControlLeft)]).continuous().while_holding(),
+        row(Action::PlaneUpright, Demonstration, "Plane upright", "Shows the upright plane in place of the level one", vec![plain(ShiftLeft)]).continuous().while_holding(),
+        row(Action::HandLeft, Demonstration, "Left hand", "Acts with the left hand from now on", vec![plain(Digit7)]),
+        row(Action::HandRight, Demonstration, "Right hand", "Acts with the right hand from now on", vec![plain(Digit8)]),
+        row(Action::HandBoth, Demonstration, "Both hands", "Acts with both hands from now on", vec![shift(Digit7)]),
+        row(Action::HandAny, Demonstration, "Any hand", "Acts with whichever hand is free from now on", vec![shift(Digit8)]),
         row(Action::Undo, Demonstration, "Undo", "Takes back the present segment of the recording, the last change outside of one, or the last edit of an open one", vec![ctrl(KeyZ)]),
         row(Action::Redo, Demonstration, "Redo", "Brings back the segment, change or edit that was undone last", vec![ctrl_shift(KeyZ), ctrl(KeyY)]),
         row(Action::DeleteSegments, Demonstration, "Delete segments", "Deletes the selected segments of the open recording", vec![plain(Delete)]),
@@ -162,6 +179,22 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::Fasten, Demonstration, "Fasten", "Fastens the held object, or the one under the cursor, by a step", vec![plain(KeyF)]),
         row(Action::Loosen, Demonstration, "Loosen", "Loosens the held object, or the one under the cursor, by a step", vec![shift(KeyF)]),
         row(Action::Cut, Demonstration, "Cut", "Closes the held scissors, or those under the cursor", vec![shift(KeyE)]),
+
+        row(Action::NextObject, Chosen, "Next object", "Chooses the next object for the keyboard", vec![plain(Tab)]),
+        row(Action::PreviousObject, Chosen, "Previous object", "Chooses the object before it", vec![shift(Tab)]),
+        row(Action::TakeOrRelease, Chosen, "Take, let go", "Takes the chosen object, or lets it go", vec![plain(Enter)]).while_choosing(),
+        row(Action::ObjectLeft, Chosen, "Object left", "Moves the chosen object to the left", vec![plain(ArrowLeft)]).continuous().while_choosing(),
+        row(Action::ObjectRight, Chosen, "Object right", "Moves the chosen object to the right", vec![plain(ArrowRight)]).continuous().while_choosing(),
+        row(Action::ObjectAway, Chosen, "Object away", "Moves the chosen object away from you", vec![plain(ArrowUp)]).continuous().while_choosing(),
+        row(Action::ObjectNearer, Chosen, "Object nearer", "Moves the chosen object towards you", vec![plain(ArrowDown)]).continuous().while_choosing(),
+        row(Action::ObjectUp, Chosen, "Object up", "Raises the chosen object", vec![plain(PageUp)]).continuous().while_choosing(),
+        row(Action::ObjectDown, Chosen, "Object down", "Lowers the chosen object", vec![plain(PageDown)]).continuous().while_choosing(),
+        row(Action::TurnLeft, Chosen, "Turn left", "Turns the chosen object to the left, about Z", vec![shift(ArrowLeft)]).continuous().while_choosing(),
+        row(Action::TurnRight, Chosen, "Turn right", "Turns the chosen object to the right, about Z", vec![shift(ArrowRight)]).continuous().while_choosing(),
+        row(Action::TipAway, Chosen, "Tip away", "Tips the chosen object away from you", vec![shift(ArrowUp)]).continuous().while_choosing(),
+        row(Action::TipNearer, Chosen, "Tip nearer", "Tips the chosen object towards you", vec![shift(ArrowDown)]).continuous().while_choosing(),
+        row(Action::RollLeft, Chosen, "Roll left", "Rolls the chosen object to the left", vec![shift(PageUp)]).continuous().while_choosing(),
+        row(Action::RollRight, Chosen, "Roll right", "Rolls the chosen object to the right", vec![shift(PageDown)]).continuous().while_choosing(),
 
         row(Action::MakeBlock, Objects, "Big block", "Makes a big block somewhere on the table", vec![plain(KeyB)]),
         row(Action::MakeStack, Objects, "Stack of five", "Makes a stack of five blocks somewhere on the table", vec![plain(KeyN)]),

@@ -4,8 +4,9 @@ use std::collections::VecDeque;
 
 use bevy::prelude::*;
 use bevy_egui::egui::Color32;
+use jiff::{Zoned, civil::Time};
 
-use crate::widgets::style::{EVENT, FAULT, WARNING};
+use crate::widgets::style::ThemeColors;
 
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
 const MAX_NOTICES: usize = 1000;
@@ -42,11 +43,11 @@ impl Tone {
         }
     }
 
-    pub(crate) const fn color(self) -> Color32 {
+    pub(crate) const fn color(self, colors: &ThemeColors) -> Color32 {
         match self {
-            Self::Event => EVENT,
-            Self::Warning => WARNING,
-            Self::Fault => FAULT,
+            Self::Event => colors.text(),
+            Self::Warning => colors.warning,
+            Self::Fault => colors.fault,
         }
     }
 }
@@ -58,6 +59,8 @@ pub(crate) struct Notice {
     pub number: u64,
     pub tone: Tone,
     pub text: String,
+    /// The time of day at which it came.
+    pub at: Time,
     /// True if it is only listed.
     pub is_quiet: bool,
 }
@@ -72,6 +75,13 @@ pub struct Notices {
     unseen: u64,
     /// Grows with every change of the notices.
     revision: u64,
+}
+
+impl Notice {
+    /// The time of day at which it came, as the user reads it.
+    pub fn time(&self) -> String {
+        self.at.strftime("%H:%M:%S").to_string()
+    }
 }
 
 impl Notices {
@@ -100,6 +110,7 @@ impl Notices {
             number: self.next,
             tone,
             text: text.to_owned(),
+            at: Zoned::now().time(),
             is_quiet,
         });
         self.next += 1;
