@@ -1,16 +1,20 @@
-//! The user before the window: keys and their actions, the camera he looks through, the plane he drags in, the pace of time, and the
-//! imitation and the edits of a recording that he watches.
+//! The user before the window: keys and their actions, the camera he looks through, the plane he drags in, the pace of time, the
+//! next recording, those there are, and the imitation and the edits of one that he watches.
 //!
 //! View and panels share it and do not know each other. A world without a window has none of it.
 
+mod curves;
 mod drag_plane;
 mod editing;
 mod ghost;
 mod imitating;
 mod keymap;
 mod navigation;
+mod next_take;
 mod pace;
+mod shelf;
 
+pub use curves::{Curves, Quantity, RecordedCurves, ShownCurves};
 pub use drag_plane::DragPlane;
 pub use editing::{EditOrder, Editing, TimelineEdit};
 pub use ghost::{Ghost, Ghosts};
@@ -20,7 +24,11 @@ pub use keymap::{
     KeyboardFocus, Keymap, Keys, Modifiers, Situation, Way, was_struck,
 };
 pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};
+pub use next_take::NextTake;
 pub use pace::{Pace, PacePlugin, SingleStep};
+pub use shelf::{
+    Errand, RecordingDigest, RunningErrand, Shelf, ShelfOrder, ShelvedRecording, TRASH,
+};
 
 use bevy::prelude::*;
 
@@ -41,6 +49,7 @@ impl Plugin for UserPlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<CameraMotion>()
             .add_message::<EditOrder>()
+            .add_message::<ShelfOrder>()
             .add_message::<TaskOrder>()
             .init_resource::<DragPlane>()
             .init_resource::<Editing>()
@@ -49,6 +58,8 @@ impl Plugin for UserPlugin {
             .init_resource::<KeyLetters>()
             .init_resource::<KeyboardFocus>()
             .init_resource::<Keymap>()
+            .init_resource::<NextTake>()
+            .init_resource::<Shelf>()
             .init_resource::<Steering>()
             .register_type::<DragPlane>()
             .register_type::<Pace>()
