@@ -1,6 +1,7 @@
 //! The program in a window.
 
 mod background;
+mod curves;
 mod display;
 mod editing;
 mod files;
@@ -12,6 +13,8 @@ mod real_robot;
 mod redraw;
 mod replay;
 mod screenshot;
+mod shelf;
+mod takes;
 mod task;
 
 pub use display::DisplayOptions;
@@ -178,6 +181,7 @@ fn build(options: WindowOptions) -> App {
         replay::plugin,
         task::plugin,
     ))
+    .add_plugins((curves::plugin, shelf::plugin, takes::plugin))
     .insert_resource(preferences)
     .insert_resource(AllowedFolders(options.allowed))
     .insert_resource(PresetSeeds::new(options.seed))

@@ -23,9 +23,11 @@ mod input;
 pub mod keymap_file;
 mod panels;
 mod picture;
+mod pictures;
 pub mod preferences;
 mod preset_seeds;
 mod scale;
+mod takes;
 #[cfg(test)]
 mod test_world;
 mod widget_list;
@@ -123,6 +125,10 @@ fn add_parts(app: &mut App) {
         input::mechanism_keys::plugin,
         panels::context_menu::plugin,
         panels::caption::plugin,
+        panels::recording_mark::plugin,
+        panels::plots::plugin,
+        panels::recordings::plugin,
+        takes::plugin,
     ));
 }
 

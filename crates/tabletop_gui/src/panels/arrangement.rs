@@ -195,6 +195,8 @@ mod tests {
             | Panel::Camera
             | Panel::DemonstrationTools
             | Panel::Objects
+            | Panel::Recordings
+            | Panel::Plots
             | Panel::Messages => vec2(300.0, 150.0),
         };
         let place = |panel| panels.place(panel, DESK, size);

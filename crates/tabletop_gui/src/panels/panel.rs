@@ -20,19 +20,25 @@ pub enum Panel {
     Objects,
     /// The recording that is made or open, along its time.
     Timeline,
+    /// The recordings that there are.
+    Recordings,
+    /// Quantities over time.
+    Plots,
     /// Notices to the user.
     Messages,
 }
 
 impl Panel {
     /// The panels in the order of their buttons, and from the top downwards when they are aligned.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Status,
         Self::Camera,
         Self::Robot,
         Self::DemonstrationTools,
         Self::Objects,
         Self::Timeline,
+        Self::Recordings,
+        Self::Plots,
         Self::Messages,
     ];
 
@@ -46,6 +52,8 @@ impl Panel {
             Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
+            Self::Recordings => "Recordings",
+            Self::Plots => "Plots",
         }
     }
 
@@ -59,6 +67,8 @@ impl Panel {
             Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
+            Self::Recordings => "Recordings",
+            Self::Plots => "Plots",
         }
     }
 
@@ -73,6 +83,10 @@ impl Panel {
             }
             Self::Objects => "Load and save task files; make objects, and clear the table",
             Self::Messages => "All messages so far, each with its place",
+            Self::Plots => "Poses, speeds, joints, grippers and contacts over time",
+            Self::Recordings => {
+                "The recordings of a folder; open, compare, name, export or multiply them"
+            }
             Self::Timeline => "The recording along its time; step, play slowly or fast",
         }
     }
@@ -86,6 +100,8 @@ impl Panel {
             | Self::DemonstrationTools
             | Self::Objects => 304.0,
             Self::Messages => 340.0,
+            Self::Recordings => 460.0,
+            Self::Plots => 520.0,
             Self::Timeline => 640.0,
         }
     }
