@@ -99,6 +99,7 @@ pub use tabletop_vision as vision;
 pub use tabletop_xml as xml;
 
 pub mod cli;
+mod progress;
 #[cfg(test)]
 #[cfg(feature = "window")]
 mod test_folder;

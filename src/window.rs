@@ -1,6 +1,7 @@
 //! The program in a window.
 
 mod background;
+mod curves;
 mod debug;
 mod display;
 mod editing;
@@ -13,6 +14,8 @@ mod real_robot;
 mod redraw;
 mod replay;
 mod screenshot;
+mod shelf;
+mod takes;
 mod task;
 
 pub use display::DisplayOptions;
@@ -186,6 +189,7 @@ fn build(options: WindowOptions) -> App {
         replay::plugin,
         task::plugin,
     ))
+    .add_plugins((curves::plugin, shelf::plugin, takes::plugin))
     .insert_resource(preferences)
     .insert_resource(AllowedFolders(options.allowed))
     .insert_resource(PresetSeeds::new(options.seed))

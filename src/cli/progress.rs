@@ -1,11 +1,14 @@
 //! Progress of long commands.
 
 use std::{
+    env,
     io::{self, IsTerminal as _, Write as _},
     time::{Duration, Instant},
 };
 
-/// A progress line on standard error, if that is a terminal.
+use crate::progress::{PROGRESS_VARIABLE, progress_line};
+
+/// A progress line on standard error, if that is a terminal, or a new line each time for a program that asks for it.
 pub(super) struct ProgressLine {
     all: u64,
     /// The unit of these numbers, with a space before it.
@@ -13,6 +16,7 @@ pub(super) struct ProgressLine {
     start: Instant,
     shown: Option<Instant>,
     is_visible: bool,
+    is_for_program: bool,
 }
 
 /// Time between changes of the line.
@@ -28,6 +32,7 @@ impl ProgressLine {
             start: Instant::now(),
             shown: None,
             is_visible: io::stderr().is_terminal(),
+            is_for_program: env::var_os(PROGRESS_VARIABLE).is_some(),
         }
     }
 
@@ -39,10 +44,14 @@ impl ProgressLine {
     /// Shows the number of done items, with a note behind.
     pub fn reach(&mut self, done: u64, note: &str) {
         let is_recent = self.shown.is_some_and(|shown| shown.elapsed() < PERIOD);
-        if !self.is_visible || (is_recent && done < self.all) {
+        if !(self.is_visible || self.is_for_program) || (is_recent && done < self.all) {
             return;
         }
         self.shown = Some(Instant::now());
+        if self.is_for_program {
+            let _unheard = writeln!(io::stderr(), "{}", progress_line(done, self.all));
+            return;
+        }
         let line = self.line(done, note, self.start.elapsed());
         let mut stderr = io::stderr();
         let _unheard = write!(stderr, "\r{line}\x1b[K").and_then(|()| stderr.flush());

@@ -4,6 +4,7 @@ mod dialog;
 mod film;
 mod kind;
 mod picture;
+mod plot;
 mod recent;
 mod reload;
 
@@ -66,6 +67,10 @@ fn carry_out(world: &mut World, reader: &mut SystemState<MessageReader<FileReque
             FileRequest::AskToSave => dialog::ask(world, Purpose::Save),
             FileRequest::AskForVideo => dialog::ask(world, Purpose::Video),
             FileRequest::AskForPicture(size) => dialog::ask(world, Purpose::Picture(size)),
+            FileRequest::AskForTable => dialog::ask(world, Purpose::Table),
+            FileRequest::AskForPlot => dialog::ask(world, Purpose::Plot),
+            FileRequest::SaveTable(path) => plot::save_table(world, &path),
+            FileRequest::SavePlot(path) => plot::save_picture(world, path),
             FileRequest::SaveVideo(path) => film::begin(world, path),
             FileRequest::SavePicture(path, size) => picture::save(world, &path, size),
             FileRequest::Open(path) => open(world, &path),

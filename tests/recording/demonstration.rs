@@ -78,7 +78,7 @@ impl Demonstration {
         Self::with(name, TabletopSimPlugins.build().set(robot))
     }
 
-    fn with(name: &str, plugins: PluginGroupBuilder) -> Self {
+    pub fn with(name: &str, plugins: PluginGroupBuilder) -> Self {
         let folder = fresh_folder(name);
         let recorder = RecorderPlugin {
             folder: folder.clone(),

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, env, ops::Range, panic};
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{ChainSpec, Drive, Face, LidBoxSpec, RobotMode},
+    core::{ChainSpec, Drive, Face, LidBoxSpec, ObjectEdit, RobotMode},
     prelude::*,
 };
 
@@ -135,8 +135,30 @@ fn scene(random: &mut Random) -> SceneSpec {
     SceneSpec { items, ..default() }
 }
 
+fn edit(random: &mut Random) -> ObjectEdit {
+    let object = ids()[random.below(ids().len())].clone();
+    let place = Vec3::new(
+        random.between(-9.0, 9.0),
+        random.between(-5.0, 5.0),
+        random.between(0.5, 5.0),
+    );
+    let id = random.of(&["changed", "", "object1"]);
+    let id = if id.is_empty() { &object } else { id };
+    let mass = random.of(&[0.0, 0.5, 3.0]);
+    let mut spec = ObjectSpec::new(id, Pose::at(place), mass, shape(random));
+    spec.dynamics.friction = Some(random.between(0.0, 1.0));
+    match random.below(4) {
+        0 => ObjectEdit::Add(Box::new(spec)),
+        1 => ObjectEdit::Remove(object),
+        _ => ObjectEdit::Change {
+            object,
+            spec: Box::new(spec),
+        },
+    }
+}
+
 fn scene_command(random: &mut Random) -> SceneCommand {
-    match random.below(8) {
+    match random.below(11) {
         0 => SceneCommand::Load(
             random
                 .of(&[
@@ -148,6 +170,7 @@ fn scene_command(random: &mut Random) -> SceneCommand {
         ),
         1 | 2 => SceneCommand::Set(Box::new(scene(random))),
         3 => SceneCommand::Clear,
+        4..=6 => SceneCommand::Edit((0..1 + random.below(2)).map(|_| edit(random)).collect()),
         _ => SceneCommand::Make {
             preset: random.of(&[Preset::BigBlock, Preset::Stack(3), Preset::BoxContainer]),
             seed: random.below(1000) as u64,
@@ -241,6 +264,7 @@ fn kind(command: &SimCommand) -> &'static str {
         SimCommand::Scene(SceneCommand::Set(_)) => "Set",
         SimCommand::Scene(SceneCommand::Clear) => "Clear",
         SimCommand::Scene(SceneCommand::Make { .. }) => "Make",
+        SimCommand::Scene(SceneCommand::Edit(_)) => "Edit",
         SimCommand::History(HistoryCommand::Undo) => "Undo",
         SimCommand::History(HistoryCommand::Redo) => "Redo",
         SimCommand::Hand(HandCommand::Select(_)) => "Select",
@@ -264,7 +288,7 @@ fn kind(command: &SimCommand) -> &'static str {
 }
 
 /// Number of kinds of commands.
-const KINDS: usize = 26;
+const KINDS: usize = 27;
 
 /// Records a random demonstration; returns the file in which its replay differs, and the difference.
 fn difference(name: &str, seed: u64, drawn: &mut BTreeMap<&'static str, usize>) -> Option<String> {

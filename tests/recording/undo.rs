@@ -3,10 +3,13 @@
 use std::{fs, ops::Range};
 
 use bevy::prelude::*;
-use tabletop::{prelude::*, replay::first_difference};
+use tabletop::{
+    core::ObjectEdit, history::HistoryPlugin, prelude::*, recorder::write_notes,
+    replay::first_difference,
+};
 
 use crate::{
-    demonstration::{Demonstration, assert_replays},
+    demonstration::{Demonstration, assert_replays, difference_of_replay},
     mechanisms,
     random::{Random, scene, script},
 };
@@ -478,4 +481,70 @@ fn redone_segments_are_there_again() {
 
     let difference = first_difference(&straight.folder, &there_and_back.folder).unwrap();
     assert_eq!(difference, None);
+}
+
+/// A random change of an object of the random scene.
+fn edit(random: &mut Random) -> SimCommand {
+    let object = random.of(&["block0", "block1", "ball", "log", "wall", "c-link2"]);
+    let span = Vec3::splat(random.between(0.5, 2.0));
+    let color = Rgb::GRAY;
+    let place = Pose::at(Vec3::new(random.between(-9.0, 9.0), -1.0, 3.0));
+    let spec = ObjectSpec::new(object, place, 2.0, Shape::Block { span, color });
+    SceneCommand::Edit(vec![ObjectEdit::Change {
+        object: object.into(),
+        spec: Box::new(spec),
+    }])
+    .into()
+}
+
+/// A recording after random acts outside recordings, of which some were undone, replays to the same bytes.
+fn record_after_undo(name: &str, seeds: impl Iterator<Item = u64>) {
+    for seed in seeds {
+        let mut random = Random(seed);
+        let plugins = TabletopSimPlugins.build().set(HistoryPlugin {
+            keeps_always: true,
+            ..default()
+        });
+        let mut demonstration = Demonstration::with(&format!("after_undo_{name}"), plugins);
+        demonstration.tick(&[scene()]);
+        for mut commands in script(&mut random, 100) {
+            match random.below(16) {
+                0 | 1 => commands.insert(0, HistoryCommand::Undo.into()),
+                2 => commands.insert(0, HistoryCommand::Redo.into()),
+                3 => commands.push(SceneCommand::Clear.into()),
+                6 => commands.push(edit(&mut random)),
+                4 => commands.push(scene()),
+                5 => commands.push(ClockCommand::SetPaused(random.below(2) == 0).into()),
+                _ => {}
+            }
+            demonstration.tick(&commands);
+        }
+        demonstration.tick(&[
+            HistoryCommand::Undo.into(),
+            ClockCommand::SetPaused(false).into(),
+            RecordingCommand::Start.into(),
+        ]);
+        for commands in script(&mut random, 40) {
+            demonstration.tick(&commands);
+        }
+        demonstration.tick(&[RecordingCommand::Finish.into()]);
+        // What a person writes about a recording is no part of it.
+        write_notes(&demonstration.folder, "some of it was undone").unwrap();
+        assert_eq!(
+            difference_of_replay(&demonstration.folder),
+            None,
+            "seed {seed}"
+        );
+    }
+}
+
+#[test]
+fn a_recording_after_undo_outside_recordings_replays() {
+    record_after_undo("few", 0..20);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn many_recordings_after_undo_outside_recordings_replay() {
+    record_after_undo("many", 20..400);
 }

@@ -51,7 +51,7 @@ impl IdAllocator {
 }
 
 /// The object with unique ids for itself, its controls, its bond points and its pointable parts.
-pub(crate) fn with_unique_ids(mut object: ObjectSpec, ids: &mut IdAllocator) -> ObjectSpec {
+pub fn with_unique_ids(mut object: ObjectSpec, ids: &mut IdAllocator) -> ObjectSpec {
     object.id = ids.unique(&object.id);
     if let Shape::Composite { parts } = &mut object.shape {
         give_ids(parts, ids);

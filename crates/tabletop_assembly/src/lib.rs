@@ -17,4 +17,4 @@ mod assembly;
 mod ids;
 
 pub use assembly::{Assembly, assemble};
-pub use ids::IdAllocator;
+pub use ids::{IdAllocator, with_unique_ids};

@@ -70,6 +70,11 @@ pub enum HistoryFact {
         /// The command that caused it.
         cause: CommandId,
     },
+    /// Outside a recording, the world is kept as it is before a command changes it, so that the change can be undone.
+    Kept {
+        /// The command.
+        cause: CommandId,
+    },
     /// The world, its tick included, is back where the recording's last segment began.
     Undone {
         /// The command that caused it.

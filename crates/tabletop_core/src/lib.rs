@@ -40,6 +40,7 @@ mod mesh;
 mod mount;
 mod number;
 mod object;
+mod object_edit;
 mod object_index;
 mod operator;
 mod paused;
@@ -96,6 +97,7 @@ pub use number::Decimal;
 pub use object::{
     Change, Control, ControlKind, CustomControl, CustomState, Dynamics, ObjectSpec, Part, Shape,
 };
+pub use object_edit::ObjectEdit;
 pub use object_index::ObjectIndex;
 pub use operator::{Operator, OperatorError};
 pub use paused::Paused;

@@ -38,6 +38,10 @@ pub enum FileRequest {
     AskForVideo,
     /// Ask for the file of a picture of the view, of so many columns and rows, and save it.
     AskForPicture([u32; 2]),
+    /// Ask for the file of a table of the curves that Plots shows, and save it.
+    AskForTable,
+    /// Ask for the file of a picture of the plot, and save it.
+    AskForPlot,
     /// Open a task file or a recording, which may be named by its folder or a file in it.
     Open(PathBuf),
     /// Save the present state as a task file. If there is a file, the user has agreed to its end.
@@ -46,6 +50,10 @@ pub enum FileRequest {
     SaveVideo(PathBuf),
     /// Save a picture of the view, of so many columns and rows.
     SavePicture(PathBuf, [u32; 2]),
+    /// Save the curves that Plots shows as a table.
+    SaveTable(PathBuf),
+    /// Save a picture of the plot.
+    SavePlot(PathBuf),
     /// Load the task file on the table anew, or not, when it changes on the disk.
     Reload(bool),
 }

@@ -24,9 +24,11 @@ mod kept;
 pub mod keymap_file;
 mod panels;
 mod picture;
+mod pictures;
 pub mod preferences;
 mod preset_seeds;
 mod scale;
+mod takes;
 #[cfg(test)]
 mod test_world;
 mod theme;
@@ -130,8 +132,14 @@ fn add_parts(app: &mut App) {
         panels::context_menu::plugin,
         panels::caption::plugin,
         panels::hints::plugin,
+    ))
+    .add_plugins((
         panels::name_tag::plugin,
         panels::pose::plugin,
+        panels::recording_mark::plugin,
+        panels::plots::plugin,
+        panels::recordings::plugin,
+        takes::plugin,
     ));
 }
 

@@ -17,8 +17,11 @@ pub(crate) mod name_tag;
 pub(crate) mod objects;
 pub(crate) mod panel;
 pub(crate) mod pause;
+pub(crate) mod plots;
 pub(crate) mod pose;
 pub(crate) mod quit;
+pub(crate) mod recording_mark;
+pub(crate) mod recordings;
 pub(crate) mod robot;
 pub(crate) mod status;
 #[cfg(test)]

@@ -93,7 +93,12 @@ fn describe(nodes: &HashMap<NodeId, &Node>, id: NodeId, outer: Affine, lines: &m
         return;
     };
     let to_pixels = node.transform().map_or(outer, |inner| outer * *inner);
-    let name = node.label().filter(|name| !name.is_empty());
+    let name = node.label().or_else(|| {
+        // A field has the name of the label beside it.
+        let label = nodes.get(node.labelled_by().first()?)?;
+        label.label().or(label.value())
+    });
+    let name = name.filter(|name| !name.is_empty());
     let value = node.value().filter(|value| !value.is_empty());
     if let Some(bounds) = node.bounds()
         && (name.is_some() || value.is_some())
@@ -143,6 +148,9 @@ mod tests {
         context.set_pixels_per_point(2.0);
         let draw = |ui: &mut egui::Ui| {
             let _ = ui.button("Start");
+            let label = ui.label("Notes:").id;
+            ui.text_edit_singleline(&mut String::new())
+                .labelled_by(label);
             ui.add_enabled(false, egui::Button::new("Undo\tall"));
         };
         let mut output = egui::FullOutput::default();
@@ -158,6 +166,8 @@ mod tests {
         let row = |name| rows.iter().find(|row| row[1] == name).unwrap();
         assert_eq!(row("Start")[..4], ["Button", "Start", "", "enabled"]);
         assert_eq!(row("Undo all")[3], "disabled");
+        let field = rows.iter().find(|row| row[0] == "TextInput").unwrap();
+        assert_eq!(field[1], "Notes:");
         let place: Vec<f32> = row("Start")[4..]
             .iter()
             .map(|number| number.parse().unwrap())

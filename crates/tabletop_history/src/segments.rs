@@ -85,18 +85,18 @@ impl Segments {
 pub fn begin_segment(world: &mut World, cause: CommandId) {
     world.write_message(SimFact::History(HistoryFact::SegmentBegun { cause }));
     if world.contains_resource::<Segments>() && is_kept(world) {
-        keep(world);
+        keep(world, cause);
     }
 }
 
 /// Keeps the world before a change that no hand makes, such as that of a whole scene, so that it can be undone. In a recording, it belongs to a segment.
-pub fn begin_change(world: &mut World) {
+pub fn begin_change(world: &mut World, cause: CommandId) {
     if world.contains_resource::<Segments>() && is_kept(world) && !world.resource::<Recording>().0 {
-        keep(world);
+        keep(world, cause);
     }
 }
 
-fn keep(world: &mut World) {
+fn keep(world: &mut World, cause: CommandId) {
     world.resource_mut::<KeepRemoved>().for_undo = true;
     let begin = snapshot(world);
     let mut segments = world.resource_mut::<Segments>();
@@ -104,6 +104,9 @@ fn keep(world: &mut World) {
     segments.redoable.clear();
     segments.drop_oldest();
     publish(world);
+    if !world.resource::<Recording>().0 {
+        world.write_message(SimFact::History(HistoryFact::Kept { cause }));
+    }
 }
 
 /// True if segments are kept now. Forgets those from before a recording that has begun, and those of one that has ended.
@@ -250,10 +253,10 @@ mod tests {
         let (mut app, lamps) = app(usize::MAX);
         app.insert_resource(Recording(false));
         app.step(1);
-        begin_change(app.world_mut());
+        begin_change(app.world_mut(), CommandId::default());
         assert_eq!(app.world().resource::<History>().undoable, 0);
         app.world_mut().resource_mut::<Segments>().keeps_always = true;
-        begin_change(app.world_mut());
+        begin_change(app.world_mut(), CommandId::default());
         assert_eq!(app.world().resource::<History>().undoable, 1);
         app.world_mut().entity_mut(lamps[3]).insert(Lamp([1; 1000]));
         tell(&mut app, HistoryCommand::Undo);
@@ -262,7 +265,7 @@ mod tests {
         assert_eq!(app.world().get(lamps[3]), Some(&Lamp([1; 1000])));
         app.insert_resource(Recording(true));
         assert_eq!(begin(&mut app).undoable, 1);
-        begin_change(app.world_mut());
+        begin_change(app.world_mut(), CommandId::default());
         assert_eq!(app.world().resource::<History>().undoable, 1);
         app.insert_resource(Recording(false));
         app.step(1);

@@ -15,6 +15,7 @@ pub(crate) mod json;
 pub(crate) mod limits;
 pub(crate) mod log_file;
 pub(crate) mod new_recording;
+pub(crate) mod notes;
 pub(crate) mod picture;
 pub(crate) mod properties;
 pub(crate) mod recording_files;

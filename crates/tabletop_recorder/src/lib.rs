@@ -41,6 +41,7 @@ pub use files::{
     frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME},
     hand_pictures::HandPictures,
     log_file::whole_lines,
+    notes::{NOTES, read_notes, write_notes},
     recording_writer::{RecordingWriter, write_recording},
     session::{
         IMPORTED, Session, SessionCommand, SessionHeader, SessionObject, SessionScene,

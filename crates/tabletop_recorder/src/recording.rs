@@ -7,6 +7,7 @@ pub(crate) mod objects;
 pub(crate) mod progress;
 pub(crate) mod recorder;
 pub(crate) mod recorder_plugin;
+pub(crate) mod released;
 pub(crate) mod report;
 pub(crate) mod stage;
 pub(crate) mod timeline_mark;

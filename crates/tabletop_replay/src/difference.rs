@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tabletop_recorder::whole_lines;
+use tabletop_recorder::{NOTES, whole_lines};
 use tabletop_storage::{Symlinks, is_taken, open_regular_file};
 use tabletop_task::Requirements;
 
@@ -146,7 +146,7 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
             match entry.file_type().map_err(failed)?.is_dir() {
                 true => folders.push(name),
                 // Requirements on objects are not recorded.
-                false if name == Path::new(Requirements::FILE) => {}
+                false if [Requirements::FILE, NOTES].map(Path::new).contains(&&*name) => {}
                 false => {
                     files.insert(name);
                 }

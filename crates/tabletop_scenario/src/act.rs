@@ -300,6 +300,8 @@ mod tests {
             SimCommand::Clock(ClockCommand::SetPaused(_)) => 2,
             // A scenario reads its files before it runs.
             SimCommand::Scene(SceneCommand::Load(_)) => return None,
+            // Who edits a scene does not demonstrate.
+            SimCommand::Scene(SceneCommand::Edit(_)) => return None,
             SimCommand::Scene(SceneCommand::Set(_)) => 3,
             SimCommand::Scene(SceneCommand::Clear) => 4,
             SimCommand::Scene(SceneCommand::Make { .. }) => 5,

@@ -31,6 +31,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod compound;
+mod edit;
 mod lifecycle;
 mod present;
 mod preset;

@@ -15,7 +15,7 @@ use tabletop_core::{
 use tabletop_history::{Parked, begin_change};
 use tabletop_physics::{remove_object, renew_if_empty};
 
-use crate::{compound::Compounds, preset};
+use crate::{compound::Compounds, edit, preset};
 
 /// Objects below this height, in units, have left the world.
 const LOWEST_Z: f32 = -1000.0;
@@ -95,12 +95,15 @@ pub(crate) fn carry_out_commands(
     world: &mut World,
     reader: &mut SystemState<MessageReader<IssuedCommand>>,
 ) -> Result {
-    carry_out(world, reader, |world, _, command| {
+    carry_out(world, reader, |world, cause, command| {
+        if let SceneCommand::Edit(edits) = &command {
+            edit::check(world, edits)?;
+        }
         let mut tables = world.query_filtered::<(), With<Table>>();
         let is_bare = world.resource::<ObjectIndex>().iter().next().is_none();
         let changes_nothing = is_bare && command == SceneCommand::Clear;
         if tables.iter(world).next().is_some() && !changes_nothing {
-            begin_change(world);
+            begin_change(world, cause);
         }
         match command {
             SceneCommand::Load(path) => {
@@ -111,6 +114,7 @@ pub(crate) fn carry_out_commands(
             }
             SceneCommand::Set(scene) => set_scene(world, &scene),
             SceneCommand::Clear => clear(world),
+            SceneCommand::Edit(edits) => edit::carry_out(world, edits),
             SceneCommand::Make { preset, seed } => return preset::make(world, preset, seed),
         }
         Ok(())

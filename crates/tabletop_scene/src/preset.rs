@@ -4,10 +4,11 @@ use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{DefaultRapierContext, RapierContextColliders, RigidBodyDisabled};
-use tabletop_assembly::IdAllocator;
-use tabletop_core::{Held, ObjectIndex, ObjectSpec, Preset, Random, Shape, Table};
+use tabletop_core::{Held, ObjectSpec, Preset, Random, Shape, Table};
 use tabletop_geometry::{Pose, Rgb};
 use tabletop_physics::{Convex, collider, convex_parts};
+
+use crate::edit::spawn;
 
 /// Least distance, in units, to anything else.
 const CLEARANCE: f32 = 0.05;
@@ -63,18 +64,6 @@ pub(crate) fn make(world: &mut World, preset: Preset, seed: u64) -> Result<(), S
         spawn(world, spec);
     }
     Ok(())
-}
-
-fn spawn(world: &mut World, spec: ObjectSpec) {
-    let others: Vec<_> = world
-        .resource::<ObjectIndex>()
-        .ids()
-        .map(str::to_owned)
-        .collect();
-    let mut ids = world.resource_mut::<IdAllocator>();
-    ids.take(others);
-    let id = ids.unique(&spec.id);
-    world.spawn((Transform::from(spec.pose), ObjectSpec { id, ..spec }));
 }
 
 /// The objects of a preset whose [`extents`] stand at a pose.

@@ -1,10 +1,11 @@
 //! The user before the window: keys and their actions, the camera he looks through, how and where he drags, the pace of time, the
-//! imitation and the edits of a recording that he watches, and the real robot that he connects to.
+//! next recording, those there are, the imitation and the edits of one that he watches, and the real robot that he connects to.
 //!
 //! View and panels share it and do not know each other. A world without a window has none of it.
 
 mod chosen;
 mod connection;
+mod curves;
 mod drag_plane;
 mod dragging;
 mod editing;
@@ -15,11 +16,14 @@ mod keymap;
 mod measuring;
 mod navigation;
 mod neighborhood;
+mod next_take;
 mod pace;
 mod robot_look;
+mod shelf;
 
 pub use chosen::Chosen;
 pub use connection::{Connection, ConnectionOrder, DrivingLeave};
+pub use curves::{Curves, Quantity, RecordedCurves, ShownCurves};
 pub use drag_plane::DragPlane;
 pub use dragging::Dragging;
 pub use editing::{EditOrder, Editing, TimelineEdit};
@@ -33,8 +37,12 @@ pub use keymap::{
 pub use measuring::Measuring;
 pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};
 pub use neighborhood::Neighborhood;
+pub use next_take::NextTake;
 pub use pace::{Pace, PacePlugin, SingleStep};
 pub use robot_look::RobotLook;
+pub use shelf::{
+    Errand, RecordingDigest, RunningErrand, Shelf, ShelfOrder, ShelvedRecording, TRASH,
+};
 
 use bevy::prelude::*;
 
@@ -56,6 +64,7 @@ impl Plugin for UserPlugin {
         app.add_message::<CameraMotion>()
             .add_message::<ConnectionOrder>()
             .add_message::<EditOrder>()
+            .add_message::<ShelfOrder>()
             .add_message::<TaskOrder>()
             .init_resource::<Chosen>()
             .init_resource::<Connection>()
@@ -69,6 +78,8 @@ impl Plugin for UserPlugin {
             .init_resource::<Keymap>()
             .init_resource::<Measuring>()
             .init_resource::<RobotLook>()
+            .init_resource::<NextTake>()
+            .init_resource::<Shelf>()
             .init_resource::<Steering>()
             .register_type::<Chosen>()
             .register_type::<DragPlane>()

@@ -82,12 +82,17 @@ fn show(purpose: Purpose) -> impl Future<Output = Option<PathBuf>> + Send + 'sta
                     .add_filter("All files", &["*"]);
                 dialog.pick_file().await
             }
-            Purpose::Save | Purpose::Video | Purpose::Picture(_) => {
+            Purpose::Save
+            | Purpose::Video
+            | Purpose::Picture(_)
+            | Purpose::Table
+            | Purpose::Plot => {
                 let (kind, extensions): (_, &[_]) = match purpose {
                     Purpose::Video => {
                         ("Videos, animations, contact sheets", &["mp4", "gif", "png"])
                     }
-                    Purpose::Picture(_) => ("Pictures", &["png"]),
+                    Purpose::Picture(_) | Purpose::Plot => ("Pictures", &["png"]),
+                    Purpose::Table => ("Tables", &["csv"]),
                     Purpose::Open | Purpose::Save => ("Task files", &["xml"]),
                 };
                 let dialog = dialog.add_filter(kind, extensions);

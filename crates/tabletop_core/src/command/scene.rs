@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::{Preset, SceneSpec};
+use crate::{ObjectEdit, Preset, SceneSpec};
 
 /// A command to the scene: it puts objects on the table and takes them away.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +23,8 @@ pub enum SceneCommand {
         /// The seed of their colours and place: the same seed makes the same objects in the same world.
         seed: u64,
     },
+    /// Change objects on the table: all of it in turn, or nothing if some of it cannot be done.
+    Edit(Vec<ObjectEdit>),
 }
 
 /// Recordings are text: bytes of a path that are no Unicode are replaced there.

@@ -19,6 +19,55 @@ pub enum AttributeValue<'a> {
 }
 
 impl Shape {
+    /// Its lengths, with their names in task files; none of what consists of parts, states or a mesh.
+    pub fn lengths_mut(&mut self) -> Vec<(&'static str, &mut f32)> {
+        fn spans(span: &mut Vec3) -> [(&'static str, &mut f32); 3] {
+            [
+                ("xspan", &mut span.x),
+                ("yspan", &mut span.y),
+                ("zspan", &mut span.z),
+            ]
+        }
+        match self {
+            Self::Block { span, .. } | Self::Link { span, .. } => spans(span).into(),
+            Self::Box {
+                span, thickness, ..
+            } => spans(span)
+                .into_iter()
+                .chain([("thickness", thickness)])
+                .collect(),
+            Self::Cylinder { radius, yspan, .. } | Self::Prism { radius, yspan, .. } => {
+                vec![("radius", radius), ("yspan", yspan)]
+            }
+            Self::Sphere { radius, .. } => vec![("radius", radius)],
+            Self::Frustum {
+                radius_top,
+                radius_bottom,
+                zspan,
+                ..
+            } => vec![
+                ("radiusTop", radius_top),
+                ("radiusBottom", radius_bottom),
+                ("zspan", zspan),
+            ],
+            Self::Ring {
+                radius_outer,
+                radius_inner,
+                zspan,
+                ..
+            } => vec![
+                ("radiusOuter", radius_outer),
+                ("radiusInner", radius_inner),
+                ("zspan", zspan),
+            ],
+            Self::Mesh { .. }
+            | Self::Composite { .. }
+            | Self::Lid { .. }
+            | Self::Control(_)
+            | Self::BondPoint(_) => Vec::new(),
+        }
+    }
+
     /// Its attributes besides parts and states: names and values, in the order of task files.
     pub fn attributes(&self) -> Vec<(&'static str, AttributeValue<'_>)> {
         use AttributeValue::{Color, Count, Number, Text};

@@ -84,6 +84,7 @@ impl Desk {
 fn line(fact: &SimFact) -> String {
     match fact {
         SimFact::History(HistoryFact::SegmentBegun { .. }) => "segment".into(),
+        SimFact::History(HistoryFact::Kept { .. }) => "kept".into(),
         SimFact::Hand(HandFact::Grasped { hand, id, .. }) => format!("{hand} grasps {id}"),
         SimFact::Hand(HandFact::Released { hand, id, .. }) => format!("{hand} releases {id}"),
         SimFact::Hand(HandFact::Destroyed { hand, id, .. }) => format!("{hand} destroys {id}"),

@@ -20,7 +20,7 @@ impl Operated {
             .filter(|given| match &given.command {
                 SimCommand::Mechanism(_) => true,
                 SimCommand::Scene(command) => match command {
-                    SceneCommand::Make { .. } | SceneCommand::Clear => true,
+                    SceneCommand::Make { .. } | SceneCommand::Edit(_) | SceneCommand::Clear => true,
                     SceneCommand::Load(_) | SceneCommand::Set(_) => false,
                 },
                 SimCommand::Recording(_)

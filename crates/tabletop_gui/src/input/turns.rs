@@ -66,7 +66,7 @@ fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<TurnSums>) {
                 *turns = TurnSums::default()
             }
             SimFact::Scene(_)
-            | SimFact::History(HistoryFact::SegmentBegun { .. })
+            | SimFact::History(HistoryFact::SegmentBegun { .. } | HistoryFact::Kept { .. })
             | SimFact::Mechanism(_)
             | SimFact::Recording(_)
             | SimFact::Robot(_)

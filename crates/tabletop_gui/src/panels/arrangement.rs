@@ -202,6 +202,8 @@ mod tests {
             | Panel::DemonstrationTools
             | Panel::Pose
             | Panel::Objects
+            | Panel::Recordings
+            | Panel::Plots
             | Panel::Messages => vec2(300.0, 120.0),
         };
         let place = |panel| panels.place(panel, DESK, size);

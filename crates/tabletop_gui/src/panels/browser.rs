@@ -31,6 +31,10 @@ pub enum Purpose {
     Video,
     /// Saving a picture of the view, of so many columns and rows.
     Picture([u32; 2]),
+    /// Saving a table of curves.
+    Table,
+    /// Saving a picture of a plot.
+    Plot,
 }
 
 impl Purpose {
@@ -41,6 +45,8 @@ impl Purpose {
             Self::Save => "task.xml",
             Self::Video => "demo.mp4",
             Self::Picture(_) => "view.png",
+            Self::Table => "curves.csv",
+            Self::Plot => "plot.png",
         }
     }
 
@@ -51,6 +57,8 @@ impl Purpose {
             Self::Save => FileRequest::Save(path),
             Self::Video => FileRequest::SaveVideo(path),
             Self::Picture(size) => FileRequest::SavePicture(path, size),
+            Self::Table => FileRequest::SaveTable(path),
+            Self::Plot => FileRequest::SavePlot(path),
         }
     }
 
@@ -61,6 +69,8 @@ impl Purpose {
             Self::Save => "Save as a task file",
             Self::Video => "Save a video (.mp4, .gif) or a contact sheet (.png)",
             Self::Picture(_) => "Save a picture of the view",
+            Self::Table => "Save the curves as a table (.csv)",
+            Self::Plot => "Save a picture of the plot (.png)",
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The Demonstration Tools (report section 4, figure 8): hands, held object, rotations, recording.
 
+mod take;
 #[cfg(test)]
 mod tests;
 
@@ -12,7 +13,7 @@ use tabletop_core::{
     Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand, ObjectSpec,
     Recording, RecordingCommand, SimCommand, SimFact,
 };
-use tabletop_user::{Action, Keymap};
+use tabletop_user::{Action, Keymap, NextTake};
 
 use crate::{
     input::{plane::PlaneButtons, turns::TurnSums},
@@ -126,6 +127,7 @@ fn show_panel(
     sources: Sources,
     mut turns: ResMut<TurnSums>,
     mut plane_buttons: ResMut<PlaneButtons>,
+    mut take: ResMut<NextTake>,
     mut commands: CommandWriter,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
@@ -133,7 +135,10 @@ fn show_panel(
     };
     let model = sources.model(&turns);
     let hand = model.hand;
-    let input = Panel::DemonstrationTools.show(context, &mut panels, |ui| show(ui, &model));
+    let mut edited = take.clone();
+    let input =
+        Panel::DemonstrationTools.show(context, &mut panels, |ui| show(ui, &model, &mut edited));
+    take.set_if_neq(edited);
     let ToolsInput { plane, request } = input.unwrap_or_default();
     plane_buttons.set_if_neq(plane);
     if let Some(request) = request {
@@ -157,7 +162,7 @@ fn command(request: Request, hand: Hand, turns: &mut TurnSums) -> Option<SimComm
     })
 }
 
-fn show(ui: &mut Ui, model: &Model) -> ToolsInput {
+fn show(ui: &mut Ui, model: &Model, take: &mut NextTake) -> ToolsInput {
     let hand = hands(ui, model);
     ui.separator();
     let object = held_object(ui, model);
@@ -170,6 +175,7 @@ fn show(ui: &mut Ui, model: &Model) -> ToolsInput {
     };
     let (plane, turn) = ui.add_enabled_ui(is_holding, rotation).inner;
     ui.separator();
+    take::show(ui, take, model.is_recording);
     let recording = recording(ui, model);
     ToolsInput {
         plane,

@@ -12,7 +12,7 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Label, RichText, ScrollArea, TextStyle, Ui},
 };
-use tabletop_core::{History, HistoryFact, RecordingFact, SceneFact, SimFact};
+use tabletop_core::{History, HistoryFact, Paused, RecordingFact, SceneFact, SimFact};
 
 use crate::{
     panels::{Panel, Panels},
@@ -81,6 +81,7 @@ pub(crate) fn plugin(app: &mut App) {
 fn note_facts(
     mut facts: MessageReader<SimFact>,
     history: Res<History>,
+    paused: Res<Paused>,
     mut notices: ResMut<Notices>,
 ) {
     for fact in facts.read() {
@@ -90,6 +91,8 @@ fn note_facts(
                     .iter()
                     .for_each(|fault| notices.add(Tone::Fault, fault));
             }
+            // Whoever acts in a pause has only forgotten it.
+            SimFact::Refused { reason, .. } if paused.0 => notices.add(Tone::Warning, reason),
             SimFact::Refused { reason, .. }
             | SimFact::Recording(RecordingFact::Failed { reason, .. }) => {
                 notices.add(Tone::Fault, reason);
@@ -118,7 +121,7 @@ fn note_facts(
                 notices.append(Tone::Event, "brought back");
             }
             SimFact::Scene(SceneFact::ObjectCreated { .. } | SceneFact::ObjectDeleted { .. })
-            | SimFact::History(HistoryFact::SegmentBegun { .. })
+            | SimFact::History(HistoryFact::SegmentBegun { .. } | HistoryFact::Kept { .. })
             | SimFact::Mechanism(_)
             | SimFact::Hand(_)
             | SimFact::Recording(RecordingFact::Started { .. })

@@ -1,4 +1,9 @@
-//! The Objects window (report section 6, figure 13): task files and presets.
+//! The Objects window (report section 6, figure 13): task files, presets, and the objects on the table.
+
+mod inspector;
+mod list;
+mod new_objects;
+mod present_object;
 
 use std::path::PathBuf;
 
@@ -9,9 +14,13 @@ use bevy_egui::{
         ComboBox, Direction, Id, InnerResponse, Layout, Response, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{Actor, CommandWriter, Preset, SceneCommand};
+use tabletop_core::{
+    Actor, CommandWriter, Held, ObjectEdit, ObjectIndex, ObjectSpec, Preset, SceneCommand,
+};
+use tabletop_geometry::Pose;
 use tabletop_user::{Action, Keymap};
 
+use self::{list::ObjectList, present_object::PresentObject};
 use crate::{
     files::{FileRequest, Files, TaskFile, short_name},
     panels::{Panel, Panels},
@@ -43,6 +52,7 @@ enum Entry {
 struct Model<'a> {
     tasks: &'a [TaskFile],
     recent: &'a [PathBuf],
+    objects: &'a [PresentObject],
     reloads: bool,
     keymap: &'a Keymap,
 }
@@ -52,14 +62,16 @@ struct Model<'a> {
 struct Selection {
     task: Option<PathBuf>,
     entry: usize,
+    objects: ObjectList,
 }
 
 /// A wish of the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Request {
     Load(PathBuf),
     Make(Preset),
     Clear,
+    Edit(Vec<ObjectEdit>),
     File(FileRequest),
 }
 
@@ -76,11 +88,28 @@ fn show_panel(
     mut file_requests: MessageWriter<FileRequest>,
     files: Res<Files>,
     keymap: Res<Keymap>,
+    index: Res<ObjectIndex>,
+    on_table: Query<(&ObjectSpec, &Transform, Option<&Held>)>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
+    if !panels.is_open(Panel::Objects) {
+        return;
+    }
+    let objects: Vec<_> = index
+        .ids()
+        .filter_map(|id| on_table.get(index.get(id)?).ok())
+        .map(|(spec, place, held)| PresentObject {
+            spec: ObjectSpec {
+                pose: Pose::from(place),
+                ..spec.clone()
+            },
+            holder: held.map(|held| held.by.to_string()),
+        })
+        .collect();
     let model = Model {
+        objects: &objects,
         tasks: &files.tasks,
         recent: &files.recent,
         reloads: files.reloads,
@@ -97,6 +126,9 @@ fn show_panel(
         Some(Request::Clear) => {
             commands.write(Actor::Panel, SceneCommand::Clear);
         }
+        Some(Request::Edit(edits)) => {
+            commands.write(Actor::Panel, SceneCommand::Edit(edits));
+        }
         Some(Request::File(request)) => {
             file_requests.write(request);
         }
@@ -109,7 +141,10 @@ fn show(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Request
     let presets = presets(ui, model, selection);
     ui.separator();
     let files = files(ui, model);
-    tasks.or(presets).or(files)
+    ui.separator();
+    let edits = list::show(ui, model.objects, &mut selection.objects);
+    let edits = (!edits.is_empty()).then_some(Request::Edit(edits));
+    tasks.or(presets).or(files).or(edits)
 }
 
 fn tasks(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Request> {
@@ -245,10 +280,13 @@ mod tests {
 
     use super::*;
     use egui_kittest::{Harness, kittest::Queryable as _};
+    use tabletop_core::Shape;
+    use tabletop_geometry::Rgb;
 
     struct Stage {
         files: Files,
         keymap: Keymap,
+        objects: Vec<PresentObject>,
         selection: Selection,
         requests: Vec<Request>,
     }
@@ -265,11 +303,13 @@ mod tests {
                 reloads: false,
             },
             keymap: Keymap::default(),
+            objects: Vec::new(),
             selection: Selection::default(),
             requests: Vec::new(),
         };
         let frame = |ui: &mut Ui, stage: &mut Stage| {
             let model = Model {
+                objects: &stage.objects,
                 tasks: &stage.files.tasks,
                 recent: &stage.files.recent,
                 reloads: stage.files.reloads,
@@ -280,7 +320,7 @@ mod tests {
                 .extend(show(ui, &model, &mut stage.selection));
         };
         Harness::builder()
-            .with_size([320.0, 500.0])
+            .with_size([320.0, 900.0])
             .build_ui_state(frame, stage)
     }
 
@@ -362,5 +402,99 @@ mod tests {
         harness.run();
         assert_eq!(clicked(&mut harness, &["Recent"]), []);
         assert!(harness.query_by_label("mine.xml").is_none());
+    }
+
+    fn with_objects() -> Harness<'static, Stage> {
+        let mut harness = harness(&["a.xml"]);
+        harness.state_mut().objects = [("ball", None), ("block", None), ("cap", Some("LeftHand"))]
+            .map(|(id, holder)| PresentObject {
+                spec: ObjectSpec::new(
+                    id,
+                    Pose::at(Vec3::new(id.len() as f32 * 2.0, 0.0, 0.5)),
+                    1.0,
+                    Shape::Sphere {
+                        radius: 0.5,
+                        color: Rgb::RED,
+                    },
+                ),
+                holder: holder.map(str::to_owned),
+            })
+            .into();
+        harness.run();
+        harness
+    }
+
+    /// The edits that come of clicks on these widgets.
+    fn edits(harness: &mut Harness<Stage>, names: &[&str]) -> Vec<ObjectEdit> {
+        let requests = clicked(harness, names);
+        requests
+            .into_iter()
+            .flat_map(|request| match request {
+                Request::Edit(edits) => edits,
+                Request::Load(_) | Request::Make(_) | Request::Clear | Request::File(_) => {
+                    panic!("{request:?}")
+                }
+            })
+            .collect()
+    }
+
+    fn add_of(edits: &[ObjectEdit]) -> &ObjectSpec {
+        let [ObjectEdit::Add(spec)] = edits else {
+            panic!("{edits:?}");
+        };
+        spec
+    }
+
+    #[test]
+    fn objects_are_made_duplicated_copied_and_deleted() {
+        let mut harness = with_objects();
+        let made = edits(&mut harness, &["New object", "Ring"]);
+        assert_eq!(add_of(&made).shape.name(), "ring");
+        let delete = edits(&mut harness, &["ball", "Delete"]);
+        assert_eq!(delete, [ObjectEdit::Remove("ball".into())]);
+        let copy = edits(&mut harness, &["Duplicate"]);
+        let (copy, block) = (add_of(&copy), &harness.state().objects[1].spec);
+        assert_eq!(copy.id, "ball");
+        let apart = copy.pose.location.distance(block.pose.location);
+        assert!(apart > 1.0, "in the place of the block: {apart}");
+        assert_eq!(edits(&mut harness, &["Copy"]), []);
+        assert_eq!(add_of(&edits(&mut harness, &["block", "Paste"])).id, "ball");
+        assert_eq!(edits(&mut harness, &["cap", "Delete"]), [], "it is held");
+    }
+
+    #[test]
+    fn a_property_is_changed_when_its_field_is_left() {
+        let mut harness = with_objects();
+        edits(&mut harness, &["block"]);
+        harness.get_by_label("Id").focus();
+        harness.run();
+        harness.get_by_label("Id").type_text("s");
+        harness.run();
+        assert_eq!(harness.state().requests, []);
+        harness.key_press(bevy_egui::egui::Key::Enter);
+        harness.run();
+        let changed = edits(&mut harness, &[]);
+        let [ObjectEdit::Change { object, spec }] = &changed[..] else {
+            panic!("{changed:?}");
+        };
+        assert_eq!((&**object, spec.id.contains('s')), ("block", true));
+        assert_eq!(spec.pose, harness.state().objects[1].spec.pose);
+    }
+
+    #[test]
+    fn several_are_moved_together() {
+        let mut harness = with_objects();
+        let list = &mut harness.state_mut().selection.objects;
+        list.select_for_move(&["ball", "block"], [0.0, 2.0, 0.0]);
+        harness.run();
+        let moved = edits(&mut harness, &["Move"]);
+        let places: Vec<_> = moved
+            .iter()
+            .map(|edit| match edit {
+                ObjectEdit::Change { spec, .. } => spec.pose.location.y,
+                ObjectEdit::Add(_) | ObjectEdit::Remove(_) => panic!("{edit:?}"),
+            })
+            .collect();
+        assert_eq!(places, [2.0, 2.0]);
     }
 }

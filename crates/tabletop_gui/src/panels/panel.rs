@@ -22,13 +22,17 @@ pub enum Panel {
     Objects,
     /// The recording that is made or open, along its time.
     Timeline,
+    /// The recordings that there are.
+    Recordings,
+    /// Quantities over time.
+    Plots,
     /// Notices to the user.
     Messages,
 }
 
 impl Panel {
     /// The panels in the order of their buttons, and from the top downwards when they are aligned.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Status,
         Self::Camera,
         Self::Robot,
@@ -36,6 +40,8 @@ impl Panel {
         Self::Pose,
         Self::Objects,
         Self::Timeline,
+        Self::Recordings,
+        Self::Plots,
         Self::Messages,
     ];
 
@@ -50,6 +56,8 @@ impl Panel {
             Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
+            Self::Recordings => "Recordings",
+            Self::Plots => "Plots",
         }
     }
 
@@ -64,6 +72,8 @@ impl Panel {
             Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
+            Self::Recordings => "Recordings",
+            Self::Plots => "Plots",
         }
     }
 
@@ -79,6 +89,10 @@ impl Panel {
             Self::Pose => "Read and type where the held object is; choose how the mouse drags",
             Self::Objects => "Load and save task files; make objects, and clear the table",
             Self::Messages => "All messages so far, each with its place",
+            Self::Plots => "Poses, speeds, joints, grippers and contacts over time",
+            Self::Recordings => {
+                "The recordings of a folder; open, compare, name, export or multiply them"
+            }
             Self::Timeline => "The recording along its time; step, play slowly or fast",
         }
     }
@@ -93,6 +107,8 @@ impl Panel {
             | Self::Pose
             | Self::Objects => 304.0,
             Self::Messages => 340.0,
+            Self::Recordings => 460.0,
+            Self::Plots => 520.0,
             Self::Timeline => 640.0,
         }
     }

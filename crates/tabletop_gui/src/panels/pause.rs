@@ -1,9 +1,9 @@
-//! The pause overlay, which covers view, panels and bar (report section 2.4); with the Timeline open, the view alone. Foreground windows
-//! stay in front of it.
+//! The pause overlay, which covers view, panels and bar (report section 2.4); with the Timeline open, the view alone; an open
+//! recording is not covered at all. Foreground windows stay in front of it.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use tabletop_core::Paused;
+use tabletop_core::{Paused, Timeline, TimelineStage};
 use tabletop_user::{Action, Keymap};
 
 use crate::panels::{Panel, Panels, context_menu::ContextMenu};
@@ -20,8 +20,14 @@ pub(crate) fn plugin(app: &mut App) {
         EguiPrimaryContextPass,
         show_overlay
             .run_if(not(Paused::is_running))
+            .run_if(not(shows_recording))
             .run_if(ContextMenu::is_closed),
     );
+}
+
+/// An open recording mostly stands still, to be looked at.
+fn shows_recording(timeline: Res<Timeline>) -> bool {
+    timeline.stage == TimelineStage::Open
 }
 
 fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>, keymap: Res<Keymap>) {

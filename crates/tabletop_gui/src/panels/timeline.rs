@@ -6,13 +6,13 @@ mod film;
 mod lesson;
 mod model;
 mod orders;
-mod pictures;
 mod segment_ends;
 mod selected_segments;
 mod sentences;
 mod track;
 mod transport;
 mod view;
+mod zoom;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
@@ -23,9 +23,9 @@ use tabletop_core::{History, Paused, Playback, ShownTask, SimTick, Timeline, Tim
 use tabletop_user::{EditOrder, Editing, Imitating, Keymap};
 
 use self::{
-    axis::TimeAxis,
     model::{Model, Moment, Request},
     view::View,
+    zoom::Zoom,
 };
 use crate::panels::{Panel, Panels};
 
@@ -41,7 +41,7 @@ pub(crate) fn plugin(app: &mut App) {
 
 /// Shows the panel's contents, and returns the user's requests.
 fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
-    view.pictures.begin_frame(model.timeline);
+    view.pictures.begin_frame(&model.timeline.folder);
     view.selection.begin_frame(model.timeline);
     let mut requests = transport::show(ui, model);
     if model.timeline.stage == TimelineStage::Absent {
@@ -50,11 +50,20 @@ fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
         requests.extend(lesson::show(ui, model));
         return requests;
     }
+    if view.zoomed != model.timeline.folder {
+        view.zoomed.clone_from(&model.timeline.folder);
+        view.zoom = Zoom::default();
+    }
+    if !model.is_paused || model.playback.goal.is_some() {
+        view.zoom.follow(model.timeline, model.playhead());
+    }
+    ui.horizontal(|ui| view.zoom.buttons(ui, model));
     let (rect, _) = ui.allocate_exact_size(
         egui::vec2(ui.available_width(), track::HEIGHT),
         egui::Sense::hover(),
     );
-    let axis = TimeAxis::new(model.timeline, rect.x_range());
+    let axis = view.zoom.axis(model.timeline, rect.x_range());
+    view.zoom.turn_wheel(ui, model.timeline, axis, rect);
     let mut moments = track::show(ui, model, axis, rect, &mut view.selection);
     let retimed = segment_ends::show(ui, model, axis, track::lane(rect), &view.selection);
     requests.extend(retimed.map(|edit| Request::Edit(EditOrder::Edit(edit))));

@@ -102,7 +102,7 @@ impl Episode {
             is_beginning: true,
             tick: start,
             logged: Vec::new(),
-            last: None,
+            last: earlier.last(),
             marks: Vec::new(),
             undoable: Vec::new(),
             redoable: Vec::new(),

@@ -162,6 +162,8 @@ pub(crate) fn follow_history(
     if let Some(episode) = &mut recorder.episode {
         let result = episode.follow(&history, *tick, *paused, &mut timeline);
         recorder.stop_on_error(result, &mut recording, &mut facts.p1());
+    } else if !history.is_empty() {
+        recorder.earlier.follow(&history, *tick, *paused);
     }
 }
 
@@ -273,12 +275,12 @@ pub(crate) fn record(
     image: Option<Res<SensorImage>>,
 ) {
     let finish = recorder.finish.clone();
+    let happened: Vec<_> = facts.p0().read().cloned().collect();
     let Some(episode) = &mut recorder.episode else {
-        facts.p0().clear();
+        recorder.earlier.end_tick(*tick, &happened);
         end_running(&mut timeline);
         return;
     };
-    let happened: Vec<_> = facts.p0().read().cloned().collect();
     let mut result = episode.write_events(&happened, &stage, &mut timeline);
     let image = image
         .as_deref()

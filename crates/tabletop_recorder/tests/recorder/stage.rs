@@ -10,10 +10,10 @@ use std::{
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     CommandId, CommandSystems, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandFact,
-    HandImages, Hands, HistoryCommand, HistoryFact, IssuedCommand, ObjectIndex, ObjectSpec,
-    Picture, PictureDemand, PictureSystems, Recording, SceneCommand, SceneFact, SceneItem,
-    SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp as _,
-    WriteCommand as _, carry_out,
+    HandImages, Hands, HistoryCommand, HistoryFact, IssuedCommand, ObjectEdit, ObjectIndex,
+    ObjectSpec, Picture, PictureDemand, PictureSystems, Recording, SceneCommand, SceneFact,
+    SceneItem, SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick,
+    StepApp as _, WriteCommand as _, carry_out,
 };
 use tabletop_geometry::{Pose, Rgb};
 use tabletop_recorder::RecorderPlugin;
@@ -310,6 +310,23 @@ fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>
                 world.write_message(fact);
                 world.resource_mut::<Hands>().set_held(hand, None);
                 world.write_message(SimFact::Hand(HandFact::Destroyed { cause, hand, id }));
+            }
+            SimCommand::Scene(SceneCommand::Edit(edits)) => {
+                for edit in edits {
+                    let (gone, come) = match edit {
+                        ObjectEdit::Add(spec) => (None, Some(spec)),
+                        ObjectEdit::Change { object, spec } => (Some(object), Some(spec)),
+                        ObjectEdit::Remove(object) => (Some(object), None),
+                    };
+                    if let Some(id) = gone {
+                        let fact = delete(world, Some(cause), &id);
+                        world.write_message(fact);
+                    }
+                    if let Some(spec) = come {
+                        let fact = create(world, Some(cause), *spec);
+                        world.write_message(fact);
+                    }
+                }
             }
             SimCommand::Scene(SceneCommand::Load(_) | SceneCommand::Make { .. })
             | SimCommand::Hand(

@@ -1,5 +1,8 @@
 use bevy::time::TimeUpdateStrategy;
-use egui_kittest::{Harness, kittest::Queryable as _};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT as _, Queryable as _},
+};
 use tabletop_core::CorePlugin;
 use tabletop_user::UserPlugin;
 
@@ -35,6 +38,7 @@ struct Stage {
     is_recording: bool,
     history: History,
     keymap: Keymap,
+    take: NextTake,
     plane: PlaneButtons,
     requests: Vec<Request>,
 }
@@ -69,7 +73,7 @@ impl Stage {
                 history: stage.history,
                 keymap: &stage.keymap,
             };
-            let input = show(ui, &model);
+            let input = show(ui, &model, &mut stage.take);
             stage.plane = input.plane;
             stage.requests.extend(input.request);
         };
@@ -216,4 +220,30 @@ fn tooltips_name_the_keys() {
     harness.run_steps(8);
     let reported = harness.query_by_label_contains("(Ctrl+Z)");
     assert!(reported.is_some());
+}
+
+#[test]
+fn the_next_take_is_named_before_it_begins_and_its_notes_stay_open() {
+    let mut harness = Stage::default().harness();
+    for (field, text) in [("Name:", "tower/1"), ("Notes:", "slowly")] {
+        harness.get_by_label(field).focus();
+        harness.run();
+        harness.get_by_label(field).type_text(text);
+        harness.run();
+    }
+    let take = &harness.state().take;
+    assert_eq!((&*take.name, &*take.notes), ("tower-1", "slowly"));
+    let recording = Stage::recording(0, 0).harness();
+    assert!(
+        recording
+            .get_by_label("Name:")
+            .accesskit_node()
+            .is_disabled()
+    );
+    assert!(
+        !recording
+            .get_by_label("Notes:")
+            .accesskit_node()
+            .is_disabled()
+    );
 }

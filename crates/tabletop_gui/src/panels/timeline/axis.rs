@@ -18,52 +18,75 @@ const STEPS: [f64; 14] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimeAxis {
     x: Rangef,
-    start: u64,
-    ticks: u64,
+    /// The first and the last tick of the recording.
+    whole: [u64; 2],
+    /// The first tick that is shown, and the number of those that are.
+    start: f64,
+    ticks: f64,
 }
 
 impl TimeAxis {
     pub fn new(timeline: &Timeline, x: Rangef) -> Self {
         let ticks = timeline.end.0.saturating_sub(timeline.start.0);
+        let ticks = ticks.max(SHORTEST);
         Self {
             x,
-            start: timeline.start.0,
-            ticks: ticks.max(SHORTEST),
+            whole: [timeline.start.0, timeline.start.0 + ticks],
+            start: timeline.start.0 as f64,
+            ticks: ticks as f64,
         }
     }
 
-    pub fn x_of(&self, tick: SimTick) -> f32 {
-        let part = tick.0.saturating_sub(self.start) as f32 / self.ticks as f32;
-        self.x.min + part.min(1.0) * self.x.span()
+    /// The axis that shows only a part of the time.
+    pub fn part(self, start: f64, ticks: f64) -> Self {
+        Self {
+            start,
+            ticks,
+            ..self
+        }
     }
 
-    /// The tick at a place, or the nearest one.
+    /// The place of a tick, which may be beside the part that is shown.
+    pub fn x_of(&self, tick: SimTick) -> f32 {
+        let [first, last] = self.whole;
+        let part = (tick.0.clamp(first, last) as f64 - self.start) / self.ticks;
+        self.x.min + part as f32 * self.x.span()
+    }
+
+    /// True if something between these places is shown.
+    pub fn shows(&self, left: f32, right: f32) -> bool {
+        right >= self.x.min && left <= self.x.max
+    }
+
+    /// The tick at a place, or the nearest one that is shown.
     pub fn tick_at(&self, x: f32) -> SimTick {
         let part = ((x - self.x.min) / self.x.span()).clamp(0.0, 1.0);
-        SimTick(self.start + (part * self.ticks as f32).round() as u64)
+        SimTick((self.start + f64::from(part) * self.ticks).round() as u64)
     }
 
     /// Number of ticks in a width; none in one to the left.
     pub fn ticks_in(&self, width: f32) -> u64 {
-        (width / self.x.span() * self.ticks as f32).round() as u64
+        (f64::from(width / self.x.span()) * self.ticks).round() as u64
     }
 
     /// The marks of the ruler, each with its text.
     pub fn marks(&self) -> Vec<(f32, String)> {
         let per_second = f64::from(TICKS_PER_SECOND);
-        let seconds = self.ticks as f64 / per_second;
+        let seconds = self.ticks / per_second;
         let fits =
             |step: &f64| f64::from(self.x.span()) * step / seconds >= f64::from(LEAST_DISTANCE);
         let step = STEPS.into_iter().find(fits).unwrap_or(seconds);
-        let count = (seconds / step).floor() as u64;
+        let before = (self.start - self.whole[0] as f64) / per_second;
+        let first = (before / step - 1e-6).ceil() as u64;
+        let last = ((before + seconds) / step + 1e-6).floor() as u64;
         let mark = |number| {
             let tick = (number as f64 * step * per_second).round() as u64;
             (
-                self.x_of(SimTick(self.start + tick)),
+                self.x_of(SimTick(self.whole[0] + tick)),
                 seconds_of(tick, step),
             )
         };
-        (0..=count).map(mark).collect()
+        (first..=last).map(mark).collect()
     }
 }
 

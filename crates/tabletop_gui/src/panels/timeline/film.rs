@@ -9,9 +9,9 @@ use tabletop_core::{SimTick, TimelinePicture};
 use super::{
     axis::TimeAxis,
     model::{Model, Moment},
-    pictures::Pictures,
     track,
 };
+use crate::pictures::Pictures;
 
 /// Sizes in points.
 const SMALL: Vec2 = vec2(80.0, 60.0);

@@ -44,6 +44,9 @@ fn show_end(
         return None;
     }
     let at = axis.x_of(SimTick(start.0 + ticks));
+    if !axis.shows(at, at) {
+        return None;
+    }
     let rect = Rect::from_center_size(pos2(at, lane.center().y), vec2(WIDTH, lane.height()));
     let response = ui.interact(rect, ui.id().with(("end", number)), Sense::drag());
     let name = format!("End of segment {number}");

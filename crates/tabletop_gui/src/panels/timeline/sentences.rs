@@ -42,8 +42,11 @@ fn show_step(
         axis.x_of(step.grasp),
         axis.x_of(SimTick(step.release.0 + 1)),
     );
+    if !axis.shows(left, right) {
+        return Vec::new();
+    }
     let right = right.max(left + NARROWEST).min(lane.max.x);
-    let left = left.min(right - NARROWEST);
+    let left = left.max(lane.min.x).min(right - NARROWEST);
     let rect = Rect::from_x_y_ranges(left..=right, lane.y_range()).shrink2(vec2(0.5, 1.0));
     let response = ui.interact(rect, ui.id().with(("step", number)), Sense::click());
     let sentence = format!("{number}. {}", step.sentence);

@@ -9,7 +9,8 @@ use tabletop_core::{
 use tabletop_geometry::Rgb;
 use tabletop_user::{Pace, TaskOrder, TimelineEdit};
 
-use super::{pictures::Pictures, *};
+use super::*;
+use crate::pictures::Pictures;
 
 /// The model and the requests of a test.
 struct Desk {
@@ -312,7 +313,7 @@ fn pictures_are_read_from_their_files_a_few_a_frame() {
     writer.write_image_data(&[200; 4 * 2 * 4]).unwrap();
     writer.finish().unwrap();
     let mut pictures = Pictures::default();
-    pictures.begin_frame(&timeline());
+    pictures.begin_frame(&timeline().folder);
     let context = egui::Context::default();
     let picture = |serial| TimelinePicture {
         tick: SimTick(1),
@@ -323,7 +324,7 @@ fn pictures_are_read_from_their_files_a_few_a_frame() {
     assert_eq!(size, Vec2::new(4.0, 2.0));
     let read = (1..10).filter(|&serial| pictures.texture(&context, &picture(serial)).is_some());
     assert_eq!(read.count(), 3);
-    pictures.begin_frame(&timeline());
+    pictures.begin_frame(&timeline().folder);
     assert!(pictures.texture(&context, &picture(9)).is_some());
     std::fs::remove_file(&path).unwrap();
     assert!(

@@ -95,8 +95,11 @@ fn show_segment(
     };
     let end = SimTick(model.timeline.end_of(number).0 + 1);
     let (left, right) = (axis.x_of(segment.start), axis.x_of(end));
+    if !axis.shows(left, right) {
+        return Vec::new();
+    }
     let right = right.max(left + NARROWEST).min(lane.max.x);
-    let left = left.min(right - NARROWEST);
+    let left = left.max(lane.min.x).min(right - NARROWEST);
     let rect = Rect::from_x_y_ranges(left..=right, lane.y_range()).shrink2(vec2(0.5, 1.0));
     let id = ui.id().with(("segment", number));
     let response = ui.interact(rect, id, Sense::click_and_drag());
@@ -162,7 +165,11 @@ fn texts(act: Option<&Act>) -> [String; 3] {
 /// Grips are marked upwards, releases downwards.
 fn show_grips(ui: &mut Ui, model: &Model, axis: TimeAxis, top: f32) {
     for (number, grip) in model.timeline.grips.iter().enumerate() {
-        let center = pos2(axis.x_of(grip.tick), top + GRIPS / 2.0);
+        let x = axis.x_of(grip.tick);
+        if !axis.shows(x, x) {
+            continue;
+        }
+        let center = pos2(x, top + GRIPS / 2.0);
         let rect = Rect::from_center_size(center, vec2(8.0, GRIPS));
         let response = ui.interact(rect, ui.id().with(("grip", number)), Sense::hover());
         let sentence = format!("{}: {}", model.time(grip.tick), grip.act);
@@ -178,14 +185,14 @@ fn show_grips(ui: &mut Ui, model: &Model, axis: TimeAxis, top: f32) {
 }
 
 fn paint_playhead(ui: &Ui, model: &Model, axis: TimeAxis, rect: Rect) {
-    let painter = ui.painter();
+    let painter = ui.painter_at(rect.expand2(vec2(MARK, 0.0)));
     if let Some(goal) = model.playback.goal {
         let ink = ui.visuals().weak_text_color();
         painter.vline(axis.x_of(goal), rect.y_range(), Stroke::new(1.0, ink));
     }
     let x = axis.x_of(model.playhead());
     painter.vline(x, rect.y_range(), Stroke::new(1.5, PLAYHEAD));
-    paint_mark(painter, pos2(x, rect.min.y + MARK), -MARK, PLAYHEAD);
+    paint_mark(&painter, pos2(x, rect.min.y + MARK), -MARK, PLAYHEAD);
 }
 
 /// A triangle that points so far up.

@@ -1,9 +1,12 @@
 //! What the user looks at in the Timeline, and has selected.
 
+use std::path::PathBuf;
+
 use bevy::prelude::*;
 use tabletop_core::SimTick;
 
-use super::{pictures::Pictures, selected_segments::SelectedSegments};
+use super::{selected_segments::SelectedSegments, zoom::Zoom};
+use crate::pictures::Pictures;
 
 /// The state of the panel.
 #[derive(Resource, Default)]
@@ -14,4 +17,7 @@ pub(super) struct View {
     pub dragged_to: Option<SimTick>,
     pub pictures: Pictures,
     pub selection: SelectedSegments,
+    pub zoom: Zoom,
+    /// The recording of which a part is shown.
+    pub zoomed: PathBuf,
 }

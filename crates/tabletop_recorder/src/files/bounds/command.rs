@@ -2,13 +2,14 @@
 
 use bevy::math::Vec3;
 use tabletop_core::{
-    ClockCommand, Drive, HandCommand, MechanismCommand, RecordingCommand, RobotCommand,
+    ClockCommand, Drive, HandCommand, MechanismCommand, ObjectEdit, RecordingCommand, RobotCommand,
     SceneCommand, SimCommand,
 };
 
 use crate::files::bounds::{
+    object::check_object,
     scene::check_scene_spec,
-    values::{Checked, check_count, finite, finite_pose},
+    values::{Checked, at, check_count, check_parts, finite, finite_pose},
 };
 
 pub(crate) fn check_command(command: &SimCommand) -> Checked {
@@ -31,7 +32,24 @@ fn check_scene_command(command: &SceneCommand) -> Checked {
         SceneCommand::Set(scene) => check_scene_spec(scene),
         SceneCommand::Clear => Ok(()),
         SceneCommand::Make { preset, .. } => preset.fault().map_or(Ok(()), Err),
+        SceneCommand::Edit(edits) => check_edits(edits),
     }
+}
+
+fn check_edits(edits: &[ObjectEdit]) -> Checked {
+    let mut parts = 0;
+    edits.iter().try_for_each(|edit| match edit {
+        ObjectEdit::Add(spec) => check_object(spec, &mut parts).map_err(at(&spec.id)),
+        ObjectEdit::Change { object, spec } => {
+            check_count("letters", object.len())?;
+            check_object(spec, &mut parts).map_err(at(object))
+        }
+        ObjectEdit::Remove(object) => {
+            parts += 1;
+            check_parts(parts)?;
+            check_count("letters", object.len())
+        }
+    })
 }
 
 fn check_hand_command(command: &HandCommand) -> Checked {
@@ -147,6 +165,16 @@ mod tests {
             (
                 SceneCommand::Make { preset, seed: 1 }.into(),
                 "a stack has 1 to 50 blocks",
+            ),
+            (
+                SceneCommand::Edit(vec![ObjectEdit::Add(Box::new(ObjectSpec::new(
+                    "it",
+                    Pose::IDENTITY,
+                    -1.0,
+                    block(),
+                )))])
+                .into(),
+                "it: mass: -1 is not from 0 to",
             ),
             (
                 RobotCommand::ShowMarkers(vec![Vec3::ZERO; MOST_VALUES + 1]).into(),

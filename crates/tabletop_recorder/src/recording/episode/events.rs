@@ -10,7 +10,7 @@ use crate::{
     files::{event::Event, segment_mark::SegmentMark, session::SessionCommand},
     recording::{
         episode::Episode, objects::initialized_controls, progress::SegmentStart,
-        stage::RecordedWorld, timeline_mark::TimelineMark,
+        released::released_by, stage::RecordedWorld, timeline_mark::TimelineMark,
     },
 };
 
@@ -82,7 +82,11 @@ impl Episode {
                 }) => Event::Cut { by, blade, link },
                 SimFact::Scene(SceneFact::TaskLoaded { .. })
                 | SimFact::Recording(_)
-                | SimFact::History(HistoryFact::Undone { .. } | HistoryFact::Redone { .. })
+                | SimFact::History(
+                    HistoryFact::Undone { .. }
+                    | HistoryFact::Redone { .. }
+                    | HistoryFact::Kept { .. },
+                )
                 | SimFact::Robot(_)
                 | SimFact::Refused { .. } => continue,
             };
@@ -147,21 +151,4 @@ impl Episode {
         self.marks.extend(mark);
         self.files.begin_segment()
     }
-}
-
-/// The hands that a command has emptied by now.
-fn released_by(command: CommandId, facts: &[SimFact]) -> Vec<Hand> {
-    let released = facts.iter().filter_map(|fact| {
-        if let SimFact::Hand(HandFact::Released {
-            cause: Some(cause),
-            hand,
-            ..
-        }) = fact
-        {
-            (*cause == command).then_some(*hand)
-        } else {
-            None
-        }
-    });
-    released.collect()
 }

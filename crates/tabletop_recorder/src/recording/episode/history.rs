@@ -25,7 +25,7 @@ impl Episode {
             match fact {
                 HistoryFact::Undone { .. } => self.undo(timeline)?,
                 HistoryFact::Redone { .. } => self.redo(timeline)?,
-                HistoryFact::SegmentBegun { .. } => {}
+                HistoryFact::SegmentBegun { .. } | HistoryFact::Kept { .. } => {}
             }
         }
         // A tick has several frames while it is paused, and after undo; its marks stay behind the commands of all of them.

@@ -1,4 +1,4 @@
-//! Pictures of a recording, read from their files as they are needed.
+//! Pictures of recordings, read from their files as they are needed.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -7,7 +7,7 @@ use std::{
 };
 
 use bevy_egui::egui::{ColorImage, Context, TextureHandle, TextureOptions};
-use tabletop_core::{Picture, Timeline, TimelinePicture};
+use tabletop_core::{Picture, TimelinePicture};
 use tabletop_storage::{Symlinks, open_regular_file};
 
 /// So many pictures are kept.
@@ -19,9 +19,9 @@ const MOST_PIXELS: usize = 1 << 26;
 /// Number of pictures that are read in a frame, so that it does not take long.
 const MOST_A_FRAME: usize = 4;
 
-/// The pictures of the present recording that were needed last.
+/// The pictures of a folder that were needed last.
 #[derive(Default)]
-pub(super) struct Pictures {
+pub(crate) struct Pictures {
     folder: PathBuf,
     textures: BTreeMap<(PathBuf, usize), Option<TextureHandle>>,
     /// In the order in which they were read.
@@ -31,10 +31,10 @@ pub(super) struct Pictures {
 
 impl Pictures {
     /// To be called before pictures are asked for.
-    pub fn begin_frame(&mut self, timeline: &Timeline) {
+    pub fn begin_frame(&mut self, folder: &Path) {
         self.read_now = 0;
-        if self.folder != timeline.folder {
-            self.folder.clone_from(&timeline.folder);
+        if self.folder != folder {
+            folder.clone_into(&mut self.folder);
             self.textures.clear();
             self.order.clear();
         }
