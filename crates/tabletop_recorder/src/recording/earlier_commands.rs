@@ -204,7 +204,13 @@ impl EarlierCommands {
         }
     }
 
-    /// Follows undo and redo to this tick, in which the simulation is paused or not. A pause is not undone.
+    /// Notes whether the simulation is paused. To be called while a recording runs, which logs pauses itself.
+    pub(crate) const fn note_pause(&mut self, paused: Paused) {
+        self.log.course.is_paused = paused.0;
+    }
+
+    /// Follows undo and redo to this tick, in which the simulation is paused or not. A pause is not undone, and a player pauses without a
+    /// command where one was.
     pub(crate) fn follow(&mut self, history: &[HistoryFact], tick: SimTick, paused: Paused) {
         for fact in history {
             match fact {

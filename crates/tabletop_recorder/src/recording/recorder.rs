@@ -162,7 +162,8 @@ pub(crate) fn follow_history(
     if let Some(episode) = &mut recorder.episode {
         let result = episode.follow(&history, *tick, *paused, &mut timeline);
         recorder.stop_on_error(result, &mut recording, &mut facts.p1());
-    } else if !history.is_empty() {
+        recorder.earlier.note_pause(*paused);
+    } else {
         recorder.earlier.follow(&history, *tick, *paused);
     }
 }

@@ -2,8 +2,7 @@
 
 use bevy::math::Vec3;
 use bevy_egui::egui::{
-    Color32, Label, Rect, RichText, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInfo, WidgetType,
-    vec2,
+    Color32, Rect, ScrollArea, Sense, TextStyle, Ui, Vec2, WidgetInfo, WidgetType, vec2,
 };
 use tabletop_core::{ObjectEdit, ObjectSpec};
 use tabletop_geometry::{Bounds, Pose};
@@ -63,7 +62,7 @@ pub(super) fn show(
         ui.label(count);
         edits.extend(new_objects::show(ui).map(|spec| added(objects, spec)));
     });
-    let height = ui.text_style_height(&bevy_egui::egui::TextStyle::Body) + 4.0;
+    let height = ui.text_style_height(&TextStyle::Body) + 4.0;
     ScrollArea::vertical()
         .id_salt("objects")
         .max_height(LIST_HEIGHT)
@@ -109,21 +108,21 @@ fn row(ui: &mut Ui, height: f32, object: &PresentObject, selected: &mut Vec<Stri
         let color = Color32::from_rgb(red, green, blue);
         ui.painter().rect_filled(swatch, 2.0, color);
     }
-    let text = rect.with_min_x(rect.min.x + SWATCH + 10.0);
-    ui.scope_builder(UiBuilder::new().max_rect(text), |ui| {
-        ui.horizontal_centered(|ui| {
-            let about = match &object.holder {
-                Some(holder) => format!("{}, in {holder}", object.spec.shape.name()),
-                None => object.spec.shape.name().to_owned(),
-            };
-            ui.add(Label::new(RichText::new(id).strong()).selectable(false));
-            ui.add(
-                Label::new(RichText::new(about).weak())
-                    .truncate()
-                    .selectable(false),
-            );
-        });
-    });
+    let about = match &object.holder {
+        Some(holder) => format!("{}, in {holder}", object.spec.shape.name()),
+        None => object.spec.shape.name().to_owned(),
+    };
+    let visuals = ui.visuals();
+    let inks = [visuals.strong_text_color(), visuals.weak_text_color()];
+    let painter = ui.painter_at(rect);
+    let font = TextStyle::Body.resolve(ui.style());
+    let mut at = rect.left_center() + vec2(SWATCH + 10.0, 0.0);
+    for (text, ink) in [id.clone(), about].into_iter().zip(inks) {
+        let text = painter.layout_no_wrap(text, font.clone(), ink);
+        let size = text.size();
+        painter.galley(at - vec2(0.0, size.y / 2.0), text, ink);
+        at.x += size.x + 8.0;
+    }
     if response.clicked() {
         let adds = ui.input(|input| input.modifiers.command);
         match adds {
