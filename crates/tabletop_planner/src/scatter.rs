@@ -36,7 +36,7 @@ const HIGH: f32 = 4.0;
 /// Room above the holds in which things are carried, in units and hand sizes: over a tower of all others, or as high as this.
 const MOST_ROOM: f32 = 2.5;
 /// From what is carried to the top of that tower, in units and hand sizes.
-const CLEAR: f32 = 0.5;
+const CLEAR: f32 = 0.8;
 /// Height of a hold above a point that is to be reached, in units and hand sizes.
 const HOLD: f32 = 0.3;
 
