@@ -112,7 +112,7 @@ impl Panel {
     fn reserved(self, context: &Context) -> Vec2 {
         let id = self.id().with("reserved");
         let now = context.input(|input| input.time);
-        let arranged: Option<Arranged> = context.data(|data| data.get_temp(Id::new(ARRANGED)));
+        let arranged: Option<PanelOrder> = context.data(|data| data.get_temp(Id::new(ARRANGED)));
         let has_settled = arranged.is_some_and(|arranged| now > arranged.at + SETTLING_SECONDS);
         let reserved = context
             .data(|data| data.get_temp(id))
@@ -189,7 +189,7 @@ impl Panel {
 
 /// The order of the panels, and when it last changed, in seconds.
 #[derive(Clone, Debug, PartialEq)]
-struct Arranged {
+struct PanelOrder {
     order: Vec<Panel>,
     at: f64,
 }
@@ -200,9 +200,9 @@ fn note_order(context: &Context, panels: &Panels) {
     let at = context.input(|input| input.time);
     context.data_mut(|data| {
         let id = Id::new(ARRANGED);
-        let noted: Option<Arranged> = data.get_temp(id);
+        let noted: Option<PanelOrder> = data.get_temp(id);
         if noted.is_none_or(|noted| noted.order != order) {
-            data.insert_temp(id, Arranged { order, at });
+            data.insert_temp(id, PanelOrder { order, at });
         }
     });
 }
