@@ -19,11 +19,11 @@ use crate::{
 
 /// The attempt to connect, and the address.
 #[derive(Resource, Default)]
-struct Attempt(Option<(String, Task<Result<RealRobot, String>>)>);
+struct PendingConnection(Option<(String, Task<Result<RealRobot, String>>)>);
 
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins(RealRobotPlugin::default())
-        .init_resource::<Attempt>()
+        .init_resource::<PendingConnection>()
         .add_systems(Update, (obey, take_robot, note_end).chain());
 }
 
@@ -53,7 +53,7 @@ fn connection_to(address: String, robot: &RealRobot) -> Connection {
 }
 
 /// The simulated robot, as a model of the one that is driven.
-struct Model {
+struct GuardedRobot {
     layout: RobotLayout,
     kinematics: crate::kinematics::RobotModel,
     table: Table,
@@ -61,7 +61,7 @@ struct Model {
 
 fn obey(
     mut orders: MessageReader<ConnectionOrder>,
-    mut attempt: ResMut<Attempt>,
+    mut attempt: ResMut<PendingConnection>,
     mut connection: ResMut<Connection>,
     mut notices: ResMut<Notices>,
     mut commands: Commands,
@@ -104,7 +104,7 @@ fn obey(
             *connection = Connection::Ended(reason.into());
             continue;
         }
-        let model = Model {
+        let model = GuardedRobot {
             layout: description.layout.clone(),
             kinematics: description.model.clone(),
             table: tables.iter().next().copied().unwrap_or_default(),
@@ -118,7 +118,11 @@ fn obey(
 }
 
 /// Connects, in the background. It takes some seconds if nobody answers.
-fn connect(address: &str, leave: Option<DrivingLeave>, model: Model) -> Result<RealRobot, String> {
+fn connect(
+    address: &str,
+    leave: Option<DrivingLeave>,
+    model: GuardedRobot,
+) -> Result<RealRobot, String> {
     let address: Address = address.parse().map_err(|error| format!("{error}"))?;
     let profile = BridgeProfile::shipped(&address.robot).map_err(|error| error.to_string())?;
     let link = match leave {
@@ -149,7 +153,7 @@ const HEAD: &str = "head";
 
 /// Lets a robot that was found stand in for the simulated one.
 fn take_robot(
-    mut attempt: ResMut<Attempt>,
+    mut attempt: ResMut<PendingConnection>,
     mut connection: ResMut<Connection>,
     mut commands: Commands,
     mut orders: CommandWriter,

@@ -146,6 +146,12 @@ mod tests {
         max: pos2(1000.0, 700.0),
     };
 
+    /// One on which all panels have room.
+    const WIDE: Rect = Rect {
+        min: Pos2::ZERO,
+        max: pos2(1300.0, 700.0),
+    };
+
     fn size(_: Panel) -> Vec2 {
         vec2(300.0, 200.0)
     }
@@ -169,9 +175,10 @@ mod tests {
     fn every_panel_has_a_place_of_its_own_on_the_desk() {
         let mut panels = Panels::default();
         panels.set_all_open(true);
-        let rects = Panel::ALL.map(|panel| Rect::from_min_size(place(&panels, panel), size(panel)));
+        let place = |panel| panels.place(panel, WIDE, size);
+        let rects = Panel::ALL.map(|panel| Rect::from_min_size(place(panel), size(panel)));
         for (i, rect) in rects.iter().enumerate() {
-            assert!(DESK.contains_rect(*rect), "{:?} at {rect}", Panel::ALL[i]);
+            assert!(WIDE.contains_rect(*rect), "{:?} at {rect}", Panel::ALL[i]);
             let others = &rects[..i];
             assert!(others.iter().all(|other| !other.intersects(*rect)));
         }
@@ -182,7 +189,7 @@ mod tests {
         let panels = Panels::default();
         let places: Vec<_> = Panel::ALL
             .into_iter()
-            .map(|panel| place(&panels, panel))
+            .map(|panel| panels.place(panel, WIDE, size))
             .collect();
         for (i, &place) in places.iter().enumerate() {
             let (column, row) = ((i / 3) as f32, (i % 3) as f32);

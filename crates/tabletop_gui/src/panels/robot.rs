@@ -58,7 +58,7 @@ fn show_panel(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
     sources: Sources,
-    mut drafts: Local<Drafts>,
+    mut drafts: Local<RobotDrafts>,
     mut head_view: ResMut<HeadView>,
     mut jog: ResMut<Jog>,
     mut commands: CommandWriter,
@@ -114,13 +114,13 @@ fn show_panel(
 
 /// What the user has chosen and typed in the window.
 #[derive(Default)]
-struct Drafts {
+struct RobotDrafts {
     selection: JointSelection,
     connection: ConnectionDraft,
 }
 
-fn show(ui: &mut Ui, model: &Model, drafts: &mut Drafts) -> RobotInput {
-    let Drafts {
+fn show(ui: &mut Ui, model: &Model, drafts: &mut RobotDrafts) -> RobotInput {
+    let RobotDrafts {
         selection,
         connection,
     } = drafts;

@@ -43,7 +43,7 @@ struct Stage {
     robot: Robot,
     is_scripted: bool,
     keymap: Keymap,
-    drafts: Drafts,
+    drafts: RobotDrafts,
     pressed: PressedButtons,
     struck: Vec<i8>,
     requests: Vec<Request>,
@@ -201,7 +201,7 @@ fn the_slider_sends_the_joint_where_it_is_clicked_and_nothing_otherwise() {
 fn a_wide_open_gripper_is_commanded_to_open_by_its_slider() {
     let joint = JointId::from(RobotJoint::LeftGripper);
     let stage = || Stage {
-        drafts: Drafts {
+        drafts: RobotDrafts {
             selection: JointSelection { joint, goal: None },
             ..default()
         },
