@@ -5,7 +5,7 @@ use std::io::{BufRead as _, IsTerminal as _, stdin};
 use crate::{
     bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Shadow},
     core::{RobotCommand, RobotMode, Table, WriteCommand as _},
-    real::{BodyGuard, RealLink, RealRobot},
+    real::{RealLink, RealRobot, head_pictures},
     robot::RobotPlugin,
     robot_body,
 };
@@ -110,10 +110,8 @@ impl DrivenOptions {
         };
         refuse_simulated_motors(robot)?;
         let profile = profile(address)?;
-        let bridge = self.drive(address, &profile, robot, table)?;
-        let feed = feed(address, &profile);
-        let link = RealLink::Driven(Box::new(bridge));
-        Ok(Some(RealRobot::new(link, feed)))
+        let link = self.drive(address, &profile, robot, table)?;
+        Ok(Some(RealRobot::new(link, feed(address, &profile))))
     }
 
     fn drive(
@@ -122,7 +120,7 @@ impl DrivenOptions {
         profile: &BridgeProfile,
         robot: &RobotPlugin,
         table: &Table,
-    ) -> Result<Bridge, Failure> {
+    ) -> Result<RealLink, Failure> {
         let options = BridgeOptions {
             limbs: self.arms.clone(),
             speed: self.speed,
@@ -132,10 +130,9 @@ impl DrivenOptions {
             any_software: self.any_software,
         };
         self.ask(address)?;
-        let mut bridge = Bridge::connect(address, profile, &options).map_err(Failure::run)?;
+        let bridge = Bridge::connect(address, profile, &options).map_err(Failure::run)?;
         let body = robot_body(robot, table).map_err(Failure::run)?;
-        bridge.set_guard(BodyGuard::new(body, *table, profile.clone()));
-        Ok(bridge)
+        Ok(RealLink::guarded(bridge, body, *table, profile))
     }
 
     /// Asks whether the robot may move.
@@ -204,10 +201,7 @@ fn profile(address: &Address) -> Result<BridgeProfile, Failure> {
 
 /// The pictures of the head camera, if the robot has one that shows them.
 fn feed(address: &Address, profile: &BridgeProfile) -> Option<PictureFeed> {
-    const HEAD: &str = "head";
-    let mut cameras = profile.cameras.iter();
-    cameras.find(|camera| camera.name == HEAD)?;
-    let feed = PictureFeed::connect(address, profile, HEAD);
+    let feed = head_pictures(address, profile)?;
     feed.inspect_err(|error| {
         say(format_args!(
             "tabletop: no pictures of the real robot: {error}"

@@ -12,9 +12,9 @@ use tabletop_robot::Description;
 use tabletop_user::{Connection, ConnectionOrder, DrivingLeave};
 
 use crate::{
-    bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Shadow},
+    bridge::{Address, Bridge, BridgeOptions, BridgeProfile, Shadow},
     planner::RobotBody,
-    real::{BodyGuard, RealLink, RealRobot, RealRobotPlugin},
+    real::{RealLink, RealRobot, RealRobotPlugin, head_pictures},
 };
 
 /// The attempt to connect, and the address.
@@ -136,20 +136,15 @@ fn connect(
                 ..BridgeOptions::default()
             };
             let bridge = Bridge::connect(&address, &profile, &options);
-            let mut bridge = bridge.map_err(|error| error.to_string())?;
+            let bridge = bridge.map_err(|error| error.to_string())?;
             let body = RobotBody::new(&model.layout, model.kinematics, &model.table);
             let body = body.map_err(|error| error.to_string())?;
-            bridge.set_guard(BodyGuard::new(body, model.table, profile.clone()));
-            RealLink::Driven(Box::new(bridge))
+            RealLink::guarded(bridge, body, model.table, &profile)
         }
     };
-    let shows_pictures = profile.cameras.iter().any(|camera| camera.name == HEAD);
-    let feed = shows_pictures.then(|| PictureFeed::connect(&address, &profile, HEAD));
+    let feed = head_pictures(&address, &profile);
     Ok(RealRobot::new(link, feed.and_then(Result::ok)))
 }
-
-/// The name of the camera in the head.
-const HEAD: &str = "head";
 
 /// Lets a robot that was found stand in for the simulated one.
 fn take_robot(

@@ -20,7 +20,7 @@ use tabletop_core::{
 };
 
 pub use body_guard::BodyGuard;
-pub use robot::{RealLink, RealRobot};
+pub use robot::{RealLink, RealRobot, head_pictures};
 
 /// Lets a [`RealRobot`] stand in for the simulated one. Insert that resource, too.
 #[derive(Clone, Copy, Debug, Default)]

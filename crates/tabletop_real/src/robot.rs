@@ -4,8 +4,13 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 use tabletop_bridge::{
-    Bridge, PictureFeed, RobotPicture, RobotState, Shadow, StopReason, WatchdogState,
+    Address, Bridge, BridgeError, BridgeProfile, PictureFeed, RobotPicture, RobotState, Shadow,
+    StopReason, WatchdogState,
 };
+use tabletop_core::Table;
+use tabletop_planner::RobotBody;
+
+use crate::body_guard::BodyGuard;
 
 /// A real robot.
 #[derive(Resource)]
@@ -23,6 +28,33 @@ pub enum RealLink {
     Shadow(Shadow),
     /// It is driven.
     Driven(Box<Bridge>),
+}
+
+impl RealLink {
+    /// A robot that is driven, and guarded by a model of its body at a table.
+    pub fn guarded(
+        mut bridge: Bridge,
+        body: RobotBody,
+        table: Table,
+        profile: &BridgeProfile,
+    ) -> Self {
+        bridge.set_guard(BodyGuard::new(body, table, profile.clone()));
+        Self::Driven(Box::new(bridge))
+    }
+}
+
+/// The pictures of the camera in a robot's head; `None` if it has none there.
+///
+/// # Errors
+/// The camera cannot be opened.
+pub fn head_pictures(
+    address: &Address,
+    profile: &BridgeProfile,
+) -> Option<Result<PictureFeed, BridgeError>> {
+    const HEAD: &str = "head";
+    let mut cameras = profile.cameras.iter();
+    cameras.find(|camera| camera.name == HEAD)?;
+    Some(PictureFeed::connect(address, profile, HEAD))
 }
 
 impl RealRobot {
