@@ -17,7 +17,7 @@ use crate::{
         Before, Doing, Execution, ExecutionPace, Following, Imitation, PlanningStage as _,
         RobotBody, imitate,
     },
-    policy::{Policy, follow_policy, left_undone},
+    policy::{PicturePolicy, Policy, follow_policy, left_undone},
     real::RealRobotPlugin,
     recorder::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
@@ -32,8 +32,8 @@ use bevy::prelude::*;
 use clap::Args;
 use tabletop_controller::{RobotController, Sight};
 use tabletop_core::{
-    ObjectSpec, RecordingCommand, RobotCommand, RobotLayout, SceneCommand, SceneSpec, SimTick,
-    StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
+    HeadCamera, ObjectSpec, RecordingCommand, RobotCommand, RobotLayout, SceneCommand, SceneSpec,
+    SimTick, StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
 };
 
 use super::{
@@ -82,7 +82,8 @@ pub(super) struct ImitateArgs {
     /// Learn the task from the recording's pictures alone, too
     #[arg(long, requires = "eyes")]
     watch: bool,
-    /// Let this policy, which `tabletop learn` has made of the recording, decide what is moved where, by the pictures of the head camera
+    /// Let this policy decide what is moved where, by the pictures of the head camera: one that `tabletop learn` has made of the recording, or an ONNX file of
+    /// somebody else's (docs/learning.md)
     #[arg(long, value_name = "FILE")]
     policy: Option<PathBuf>,
     #[command(flatten)]
@@ -121,8 +122,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         let reason = "the recording moves nothing for good, so there is nothing to imitate";
         return Err(Failure::input(reason));
     }
-    let policy = args.policy.as_deref().map(Policy::read).transpose();
-    let policy = policy.map_err(Failure::input)?;
+    let policy = args.policy.as_deref().map(read_policy).transpose()?;
     let robot = args.robot.plugin()?;
     let hand_pictures = args.hand_cameras.of(&robot)?;
     let body = robot_body(&robot, &scene.table).map_err(Failure::run)?;
@@ -146,7 +146,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             hand_pictures: &hand_pictures,
             exchanges_colors: args.exchange_colors,
             has_eyes: args.eyes,
-            policy: policy.as_ref(),
+            policy: policy.as_deref(),
             real: &args.real,
             seed,
             folder,
@@ -187,6 +187,28 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(u8::from(!is_done)))
 }
 
+/// The policy of a file.
+fn read_policy(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
+    if file.extension().is_some_and(|kind| kind == "onnx") {
+        return read_onnx(file);
+    }
+    Ok(Box::new(Policy::read(file).map_err(Failure::input)?))
+}
+
+#[cfg(feature = "onnx")]
+fn read_onnx(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
+    let policy = crate::policy::OnnxPolicy::read(file).map_err(Failure::input)?;
+    Ok(Box::new(policy))
+}
+
+#[cfg(not(feature = "onnx"))]
+fn read_onnx(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
+    Err(Failure::input(format!(
+        "{}: this program was built without ONNX; build it with cargo build --release --features onnx",
+        file.display()
+    )))
+}
+
 /// The scene with which a recording begins.
 fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
     let unknown = || {
@@ -211,7 +233,7 @@ struct Attempt<'a> {
     hand_pictures: &'a HandPictures,
     exchanges_colors: bool,
     has_eyes: bool,
-    policy: Option<&'a Policy>,
+    policy: Option<&'a dyn PicturePolicy>,
     real: &'a DrivenOptions,
     seed: Option<u64>,
     folder: Option<PathBuf>,
@@ -260,6 +282,10 @@ impl Attempt<'_> {
         });
         if let Some(real) = real {
             real::stand_in(&mut app, real);
+        }
+        if let Some([width, height]) = self.policy.and_then(PicturePolicy::picture_size) {
+            let mut camera = app.world_mut().resource_mut::<HeadCamera>();
+            (camera.width, camera.height) = (width, height);
         }
         app.world_mut()
             .write_command(SceneCommand::Set(Box::new(scene)));

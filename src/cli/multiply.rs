@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode, time::In
 
 use crate::{
     Collection, CollectionError,
-    multiplication::{Made, Multiplication},
+    multiplication::{Made, Multiplication, Variation},
     recorder::{RecordingReader, SessionHeader, read_original},
     run_episodes,
     shipped::read_faultless_task,
@@ -50,6 +50,9 @@ pub(super) struct MultiplyArgs {
     robot: Option<Option<PathBuf>>,
     #[command(flatten)]
     variation: VariationOptions,
+    /// Keep all that the task moves in the head camera's picture
+    #[arg(long)]
+    in_view: bool,
     /// The task file with the objects to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
@@ -84,7 +87,10 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         Some(file) => Some(robot_of(file.as_deref())?),
         None => None,
     };
-    let variation = args.variation.variation();
+    let variation = Variation {
+        in_view: args.in_view,
+        ..args.variation.variation()
+    };
     let robot_or_baxter = robot.clone().unwrap_or_default();
     let hand_pictures = args.hand_cameras.of(&robot_or_baxter)?;
     let scene = match &args.setup {
@@ -254,6 +260,7 @@ impl MultiplyArgs {
             "distractors": self.variation.distractors,
             "camera": self.variation.camera,
             "light": self.variation.light,
+            "in_view": self.in_view,
             "hand_cameras": self.hand_cameras.hand_cameras,
         })
     }

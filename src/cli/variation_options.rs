@@ -36,6 +36,7 @@ impl VariationOptions {
             distractors: self.distractors,
             camera: self.camera,
             light: self.light,
+            in_view: false,
         }
     }
 }

@@ -14,13 +14,13 @@ use crate::{
     shipped::read_faultless_task,
     storage::Storage,
     task::{Demonstration, Requirements, Task, color_name},
-    vision::{DescribedObject, calibrated, described},
+    vision::{DescribedObject, Descriptions, calibrated},
     watching::Watcher,
 };
 use bevy::math::Vec3;
 use clap::Args;
 use serde_json::json;
-use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Picture, SimTick, TICKS_PER_SECOND, Table};
+use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, SimTick, TICKS_PER_SECOND, Table};
 use tabletop_geometry::{Pose, Rgb};
 
 use super::{
@@ -198,7 +198,12 @@ impl PictureRoll {
             Some(setup) => setup,
             None => {
                 let table = Table::default();
-                let objects = described_in(&first, &camera, &table);
+                let mut descriptions =
+                    Descriptions::of(&first, &Camera::of_head(&camera, &table), &table);
+                for path in pictures.iter().skip(1) {
+                    descriptions.see(&read_picture(path).map_err(Failure::input)?);
+                }
+                let objects = named(&descriptions);
                 if objects.is_empty() {
                     return Err(Failure::input(format!(
                         "{}: the first picture shows no object; name those that come later with --setup FILE",
@@ -287,11 +292,11 @@ impl WatchedRoll {
     }
 }
 
-/// The objects that a picture shows, named by their colours. Says what each is taken for.
-fn described_in(picture: &Picture, camera: &HeadCamera, table: &Table) -> Vec<ObjectSpec> {
-    let found = described(picture, &Camera::of_head(camera, table), table);
+/// Described objects, named by their colours. Says what each is taken for.
+fn named(descriptions: &Descriptions) -> Vec<ObjectSpec> {
     let mut ids = IdAllocator::default();
-    let objects = found.into_iter().map(|DescribedObject { shape, pose }| {
+    let objects = descriptions.objects().cloned();
+    let objects = objects.map(|DescribedObject { shape, pose }| {
         let solids = shape.drawn();
         let color = solids.first().map_or(Rgb::GRAY, |solid| solid.color);
         let id = ids.unique(color_name(color));

@@ -209,6 +209,23 @@ fn the_light_differs_and_nothing_else_does() {
 }
 
 #[test]
+fn all_that_is_moved_is_seen() {
+    let demo = record_shipped("stack_three", "multiply_in_view");
+    let out = place("multiply_in_view_out");
+    let printed = multiply(&demo, &out, &["--count", "8", "--in-view"]);
+    assert!(
+        printed.contains("the head camera did not see all that is moved"),
+        "{printed}"
+    );
+    for number in 0..8 {
+        let recording = out.join(format!("{number:04}"));
+        let watched = stdout(&tabletop(&["watch", recording.to_str().unwrap()]));
+        let told = explained(&recording);
+        assert!(watched.starts_with(&told), "{number}: {watched}\n{told}");
+    }
+}
+
+#[test]
 fn another_robot_shows_it() {
     const PANDA: &str = "shipped:assets/panda/robot.ron";
     // Blocks that fit between its fingers.

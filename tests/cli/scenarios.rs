@@ -65,6 +65,7 @@ fn tasks_are_demonstrated() {
         "letter_m",
         "red_on_blue",
         "stack_small",
+        "pyramid",
     ] {
         passes(&format!("{name}.ron"));
     }
@@ -200,6 +201,7 @@ fn every_shipped_scenario_has_its_test() {
         "panda_stack.ron",
         "panel.ron",
         "presets.ron",
+        "pyramid.ron",
         "red_on_blue.ron",
         "rings.ron",
         "robot_cut.ron",

@@ -531,23 +531,15 @@ fn record_after_undo(name: &str, seeds: impl Iterator<Item = u64>) {
         demonstration.tick(&[RecordingCommand::Finish.into()]);
         // What a person writes about a recording is no part of it.
         write_notes(&demonstration.folder, "some of it was undone").unwrap();
-        // Known to fall short: after some undone acts, a replay counts one command more or less before its first tick.
         let difference = difference_of_replay(&demonstration.folder);
-        let counts = |difference: &String| {
-            difference.starts_with("session.jsonl: line 1:")
-                && difference.contains("earlier_commands")
-        };
-        assert!(
-            difference.as_ref().is_none_or(counts),
-            "seed {seed}: {difference:?}"
-        );
+        assert_eq!(difference, None, "seed {seed}");
     }
 }
 
 #[test]
 fn a_recording_after_undo_outside_recordings_replays() {
-    // Known to fall short: with seed 5, objects are noted in another order than in the replay.
-    record_after_undo("few", 0..5);
+    // Known to fall short: after some undone acts, such as those of seed 5, the robot or what hands hold is not the same in the replay.
+    record_after_undo("few", (0..5).chain(6..10));
 }
 
 #[test]

@@ -8,9 +8,11 @@ mod lasting;
 mod late;
 mod operated;
 mod performance;
+mod still_scene;
 mod variation;
 mod way;
 
+pub use still_scene::StillScene;
 pub use variation::{Variation, with_colors_exchanged};
 
 use std::{fmt, io, path::Path};
@@ -100,6 +102,8 @@ pub struct Made {
 pub enum Dropped {
     /// There was no room for everything.
     NoRoom,
+    /// Something that the task moves was not in the picture all the time.
+    OutOfView,
     /// A step of the task has failed.
     Step(usize, PlanFailure),
 }
@@ -244,9 +248,12 @@ impl Multiplication {
     pub fn make(&self, number: u64, folder: &Path) -> Result<Made, MultiplyError> {
         let mut made = Made::default();
         for attempt in 0..TRIES {
-            let Some(beginning) = self.beginning(number, attempt)? else {
-                made.dropped.push(Dropped::NoRoom);
-                continue;
+            let beginning = match self.beginning(number, attempt)? {
+                Ok(beginning) => beginning,
+                Err(dropped) => {
+                    made.dropped.push(dropped);
+                    continue;
+                }
             };
             match self.show(beginning, number, attempt, folder)? {
                 Ok(()) => {
@@ -308,7 +315,7 @@ impl Multiplication {
         self.seed
     }
 
-    /// The beginning of an attempt at the demonstration of this number. `None` if there is no room for everything.
+    /// The beginning of an attempt at the demonstration of this number, or the reason why there is none.
     ///
     /// # Errors
     /// The objects do not fit.
@@ -316,24 +323,27 @@ impl Multiplication {
         &self,
         number: u64,
         attempt: u64,
-    ) -> Result<Option<VariedBeginning>, MultiplyError> {
+    ) -> Result<Result<VariedBeginning, Dropped>, MultiplyError> {
         let random = &mut Random::new(self.seed_of(number, attempt));
         let Some(scene) = self.varying().varied(random) else {
-            return Ok(None);
+            return Ok(Err(Dropped::NoRoom));
         };
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         let binding = self.late.bind(&self.task, &self.requirements, &objects)?;
         let mount = self.variation.mount(&scene.table, random);
         let seed = random.bits();
         let light = self.variation.light(random);
-        Ok(Some(VariedBeginning {
+        let beginning = VariedBeginning {
             scene,
             objects,
             binding,
             mount,
             light,
             seed,
-        }))
+        };
+        let is_in_view = !self.variation.in_view
+            || StillScene::of(&beginning).keeps_in_view(&self.task, &beginning.binding);
+        Ok(is_in_view.then_some(beginning).ok_or(Dropped::OutOfView))
     }
 
     /// Demonstrates it once, and records that.
@@ -448,6 +458,7 @@ impl fmt::Display for Dropped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoRoom => f.write_str("there was no room for everything"),
+            Self::OutOfView => f.write_str("the head camera did not see all that is moved"),
             Self::Step(step, failure) => write!(f, "step {step}: {failure}"),
         }
     }

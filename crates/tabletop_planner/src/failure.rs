@@ -52,6 +52,8 @@ pub enum PlanFailure {
     NoGoal(String),
     /// Something was to be taken where nothing is.
     NothingThere,
+    /// It could not be decided what to do next, for this reason.
+    Undecided(String),
     /// Ever more was to be done.
     Endless,
     /// The robot was stopped from outside.
@@ -83,6 +85,7 @@ impl PlanFailure {
             | Self::Misplaced(_)
             | Self::NoGoal(_)
             | Self::NothingThere
+            | Self::Undecided(_)
             | Self::Endless
             | Self::Stopped => false,
         }
@@ -105,6 +108,7 @@ impl PlanFailure {
             | Self::Misplaced(_)
             | Self::NoGoal(_)
             | Self::NothingThere
+            | Self::Undecided(_)
             | Self::Endless
             | Self::Stopped => 5,
         };
@@ -128,6 +132,7 @@ impl PlanFailure {
             | Self::Gone(_)
             | Self::NoGoal(_)
             | Self::NothingThere
+            | Self::Undecided(_)
             | Self::Endless
             | Self::Stopped => true,
             Self::NoWay(_) | Self::NotHeld(_) | Self::Blocked { .. } | Self::Misplaced(_) => false,
@@ -152,6 +157,7 @@ impl PlanFailure {
             Self::Misplaced(_) => "misplaced",
             Self::NoGoal(_) => "no goal",
             Self::NothingThere => "nothing there",
+            Self::Undecided(_) => "undecided",
             Self::Endless => "endless",
             Self::Stopped => "stopped",
         }
@@ -205,6 +211,7 @@ impl fmt::Display for PlanFailure {
                 "{object} was let go in the air, so the demonstration does not show where it belongs"
             ),
             Self::NothingThere => write!(f, "something was to be taken where nothing is"),
+            Self::Undecided(reason) => write!(f, "nothing was decided: {reason}"),
             Self::Endless => write!(f, "there was always something more to be done"),
             Self::Stopped => write!(f, "the robot was stopped"),
         }

@@ -12,13 +12,14 @@ use tabletop_task::{
 
 use crate::{
     evaluation::{GRASP, bindings, pose_at},
-    policy::{Decision, ObjectPlace, Policy},
+    picture_policy::PicturePolicy,
+    policy::{Decision, ObjectPlace},
 };
 
 /// Lets a robot act as a policy decides: at most as many moves as given. The policy sees the picture of the head camera; the shape of what it takes, and
 /// where that is exactly, the stage tells. `seed` decides all random trials; `tell` is called before each move, with its number, the object and where it is put, in units.
 pub fn follow_policy(
-    policy: &Policy,
+    policy: &dyn PicturePolicy,
     stage: &mut impl HeadCameraStage,
     body: &RobotBody,
     most: usize,
@@ -43,8 +44,13 @@ pub fn follow_policy(
             all.failure = Some((number, PlanFailure::Stopped));
             return all;
         };
-        let Decision::Move { pick, place } = policy.decide(&seen.picture, &seen.camera) else {
-            return all;
+        let (pick, place) = match policy.decide(&seen.picture, &seen.camera) {
+            Ok(Decision::Move { pick, place }) => (pick, place),
+            Ok(Decision::Done) => return all,
+            Err(error) => {
+                all.failure = Some((number, PlanFailure::Undecided(error.to_string())));
+                return all;
+            }
         };
         let Some((id, object)) = taken(stage.sight(), pick) else {
             all.failure = Some((number, PlanFailure::NothingThere));

@@ -3,15 +3,15 @@
 use bevy::math::{Quat, Vec2};
 use tabletop_camera::Rasterizer;
 use tabletop_core::Random;
-use tabletop_episodes::multiplication::{Multiplication, VariedBeginning};
+use tabletop_episodes::multiplication::{Multiplication, StillScene, VariedBeginning};
 use tabletop_geometry::{Pose, turn_about_z};
 use tabletop_task::{Role, Task, TaskStep};
 
 use crate::{
     error::PolicyError,
+    heading::heading,
     label::{HeatMark, Label, MOST_LEVELS},
     planes::Planes,
-    still_scene::{StillScene, heading},
     table_view::{pixel_behind, view_of},
 };
 
@@ -100,34 +100,17 @@ impl<'a> Curriculum<'a> {
         Ok(heights)
     }
 
-    /// A scene in which the camera sees every object that the task moves, and every place to which it does.
+    /// A scene in which the camera sees all that the task moves, from beginning to end.
     pub(crate) fn begin(&self, number: u64) -> Result<(VariedBeginning, StillScene), PolicyError> {
         for attempt in 0..TRIES {
-            if let Some(beginning) = self.multiplication.beginning(number, attempt)? {
+            if let Ok(beginning) = self.multiplication.beginning(number, attempt)? {
                 let scene = StillScene::of(&beginning);
-                if self.is_seen(&beginning, scene.clone())? {
+                if scene.keeps_in_view(self.task(), &beginning.binding) {
                     return Ok((beginning, scene));
                 }
             }
         }
         Err(PolicyError::NothingSeen)
-    }
-
-    fn is_seen(
-        &self,
-        beginning: &VariedBeginning,
-        mut scene: StillScene,
-    ) -> Result<bool, PolicyError> {
-        for step in &self.task().steps {
-            let (id, _, goal) = handled(self.task(), step, &scene, beginning)?;
-            let from = scene.pose(&id);
-            let ends = [from.unwrap_or_default(), goal];
-            if !ends.into_iter().all(|end| scene.sees(end.location)) {
-                return Ok(false);
-            }
-            scene.put(&id, goal);
-        }
-        Ok(true)
     }
 
     /// The sample of this number: of a scene in which some steps have been done, not quite exactly.

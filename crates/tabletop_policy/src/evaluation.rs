@@ -6,15 +6,15 @@ use std::fmt;
 use bevy::math::Quat;
 use tabletop_camera::Rasterizer;
 use tabletop_core::ObjectSpec;
-use tabletop_episodes::multiplication::VariedBeginning;
+use tabletop_episodes::multiplication::{StillScene, VariedBeginning};
 use tabletop_geometry::{Pose, turn_about_z};
 use tabletop_task::{Arrangement, Binding, Symmetry, Task};
 
 use crate::{
     curriculum::Curriculum,
     error::PolicyError,
+    heading::heading,
     policy::{Decision, ObjectPlace, Policy},
-    still_scene::{StillScene, heading},
 };
 
 /// The result of some scenes.

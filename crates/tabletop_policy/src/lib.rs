@@ -28,12 +28,15 @@ mod convolution;
 mod curriculum;
 mod error;
 mod evaluation;
+mod heading;
 mod label;
 mod loss_curve;
+#[cfg(feature = "onnx")]
+mod onnx;
+mod picture_policy;
 mod planes;
 mod policy;
 mod resampling;
-mod still_scene;
 mod table_view;
 mod tensor_file;
 #[cfg(test)]
@@ -47,5 +50,8 @@ pub use error::PolicyError;
 pub use evaluation::{Evaluation, PolicyFailure};
 pub use label::Yaw;
 pub use loss_curve::loss_curve;
+#[cfg(feature = "onnx")]
+pub use onnx::OnnxPolicy;
+pub use picture_policy::PicturePolicy;
 pub use policy::{Decision, ObjectPlace, Policy};
 pub use training::{Training, TrainingProgress};

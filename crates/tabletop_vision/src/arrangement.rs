@@ -12,6 +12,7 @@ use crate::{
     refine::{Refinement, TRACKING},
     residual::{OUTLIER, Residual, TriedFit, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
+    support,
 };
 
 /// The part of what an object should explain that it has to explain at least.
@@ -173,12 +174,12 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         })
     }
 
-    /// Finds all objects, if it is known of none where it was before; else follows those, and looks closely at those that were let go since.
-    pub fn begin(&mut self, before: &[Option<StandingPose>], let_go: &[bool]) {
+    /// Finds all objects, if it is known of none where it was before; else follows those.
+    pub fn begin(&mut self, before: &[Option<StandingPose>]) {
         if before.iter().all(Option::is_none) {
             self.arrange(&mut || 1.0);
         } else {
-            self.follow(before, let_go);
+            self.follow(before);
         }
     }
 
@@ -195,8 +196,9 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         self.all_but(|_| false, &self.residual.whole())
     }
 
-    /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere.
-    fn follow(&mut self, before: &[Option<StandingPose>], let_go: &[bool]) {
+    /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere. What was in the air does not stay there, so
+    /// it is looked at closely.
+    fn follow(&mut self, before: &[Option<StandingPose>]) {
         self.allowance = STILL_SUPPORTED;
         for (i, placement) in before.iter().enumerate() {
             self.place(i, *placement);
@@ -207,7 +209,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             (0..self.objects.len()).partition(|&i| self.objects[i].guide().is_some());
         for &i in [&guided, &free, &guided].into_iter().flatten() {
             let fit = self.fit(i);
-            if let_go[i] || fit.misfit > good * fit.pixels as f32 {
+            if self.hovers(i) || fit.misfit > good * fit.pixels as f32 {
                 self.settle(i, &TRACKING, true);
             }
         }
@@ -220,6 +222,17 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         if self.placements.contains(&None) {
             self.arrange(&mut || 1.0);
         }
+    }
+
+    /// True if an object stands on nothing, and no joint holds it.
+    fn hovers(&self, object: usize) -> bool {
+        let known = &self.objects[object];
+        let others = self.objects.iter().zip(&self.placements).enumerate();
+        let others = others.filter(|(i, _)| *i != object);
+        let others = others.filter_map(|(_, (other, at))| Some((other, at.as_ref()?)));
+        known.guide().is_none()
+            && self.placements[object]
+                .is_some_and(|placement| !support::stands(known, &placement, others))
     }
 
     /// Finds all objects without a placement, and settles all.

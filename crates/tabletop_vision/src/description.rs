@@ -1,4 +1,4 @@
-//! Descriptions: what objects look like that nothing is known of, from the first picture that shows them.
+//! Descriptions: what objects look like that nothing is known of, from the pictures that show them where they are first.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -43,41 +43,135 @@ const REFINED: usize = 16;
 /// The least size of an object, in units.
 const THINNEST: f32 = 0.1;
 
-/// The objects in a picture of a table, none of which is known: each is taken for a block, a cylinder that stands upright, or a sphere, of one colour, on the table
-/// itself. What hides parts of each other is described by what is seen of it.
-pub fn described(picture: &Picture, camera: &Camera, table: &Table) -> Vec<DescribedObject> {
-    let is_of_camera = picture.width == camera.width
-        && picture.height == camera.height
-        && picture.rgb.len() == 3 * picture.depth.len();
-    if !is_of_camera {
-        return Vec::new();
-    }
-    let ground = Scene {
-        solids: vec![DrawnSolid::of_table(table, 1)],
-        ..Scene::default()
-    };
-    let layers = PictureLayers::of(&ground, camera);
-    let mut residual = Residual::new(picture, layers, *camera);
-    let whole = residual.whole();
-    residual.keep(&[], &whole);
-    let mut found: Vec<DescribedObject> = Vec::new();
-    let mut silhouettes = silhouettes(picture, residual.squares());
-    // What is nearer to the camera hides what is behind it.
-    let lowest = |blob: &Blob| blob.pixels.last().copied();
-    silhouettes.sort_by_key(|blob| std::cmp::Reverse(lowest(blob)));
-    for silhouette in silhouettes.into_iter().take(MOST) {
-        let mut description = ShapeSearch {
-            residual: &mut residual,
-            kept: solids_of(&found),
-            inner: inner(&silhouette, picture.width as usize),
-            silhouette: &silhouette,
-        };
-        found.extend(description.best());
-    }
-    found
+/// Least part of an object's pixels that it keeps if it has not moved, and least growth of their number from which it is described anew.
+const SAME_PLACE: f32 = 0.9;
+const MORE: f32 = 1.1;
+
+/// Objects on a table, none of which is known: each is taken for a block, a cylinder that stands upright, or a sphere, of one colour, on the table itself.
+///
+/// The first picture says which objects there are. What hides parts of each other is described by what is seen of it, and better as soon as a later picture
+/// shows more of it, while it stands where it is first.
+#[derive(Clone, Debug)]
+pub struct Descriptions {
+    camera: Camera,
+    table: Table,
+    described: Vec<Described>,
 }
 
-fn solids_of(objects: &[DescribedObject]) -> Vec<DrawnSolid> {
+/// An object as described, and its pixels in the picture that has shown most of it.
+#[derive(Clone, Debug)]
+struct Described {
+    object: DescribedObject,
+    silhouette: Blob,
+}
+
+impl Descriptions {
+    /// The objects of the first picture. None if the camera takes others.
+    pub fn of(picture: &Picture, camera: &Camera, table: &Table) -> Self {
+        let mut descriptions = Self {
+            camera: *camera,
+            table: *table,
+            described: Vec::new(),
+        };
+        let Some((mut residual, mut silhouettes)) = descriptions.look(picture) else {
+            return descriptions;
+        };
+        // What is nearer to the camera hides what is behind it.
+        let lowest = |blob: &Blob| blob.pixels.last().copied();
+        silhouettes.sort_by_key(|blob| std::cmp::Reverse(lowest(blob)));
+        for silhouette in silhouettes.into_iter().take(MOST) {
+            let nearer = descriptions.objects();
+            let found = described_by(&silhouette, &mut residual, solids_of(nearer));
+            let found = found.map(|object| Described { object, silhouette });
+            descriptions.described.extend(found);
+        }
+        descriptions
+    }
+
+    /// Describes those objects anew of which a later picture shows more.
+    pub fn see(&mut self, picture: &Picture) {
+        let Some((mut residual, silhouettes)) = self.look(picture) else {
+            return;
+        };
+        for described in &mut self.described {
+            let mut grown = silhouettes.iter().filter(|it| described.shows_more(it));
+            let found = grown.next().and_then(|silhouette| {
+                let object = described_by(silhouette, &mut residual, Vec::new())?;
+                let is_like =
+                    color_of(&object).dot(color_of(&described.object)) > libm::cosf(ALIKE);
+                is_like.then(|| Described {
+                    object,
+                    silhouette: silhouette.clone(),
+                })
+            });
+            if let Some(found) = found {
+                *described = found;
+            }
+        }
+    }
+
+    /// The objects as they are described now.
+    pub fn objects(&self) -> impl Iterator<Item = &DescribedObject> {
+        self.described.iter().map(|described| &described.object)
+    }
+
+    /// What a picture has besides the table.
+    fn look<'p>(&self, picture: &'p Picture) -> Option<(Residual<'p>, Vec<Blob>)> {
+        let is_of_camera = picture.width == self.camera.width
+            && picture.height == self.camera.height
+            && picture.rgb.len() == 3 * picture.depth.len();
+        if !is_of_camera {
+            return None;
+        }
+        let ground = Scene {
+            solids: vec![DrawnSolid::of_table(&self.table, 1)],
+            ..Scene::default()
+        };
+        let layers = PictureLayers::of(&ground, &self.camera);
+        let mut residual = Residual::new(picture, layers, self.camera);
+        let whole = residual.whole();
+        residual.keep(&[], &whole);
+        let silhouettes = silhouettes(picture, residual.squares());
+        Some((residual, silhouettes))
+    }
+}
+
+impl Described {
+    /// True if these pixels, of another picture, are those of the object and more.
+    fn shows_more(&self, silhouette: &Blob) -> bool {
+        let (own, other) = (&self.silhouette.pixels, &silhouette.pixels);
+        let kept = own
+            .iter()
+            .filter(|pixel| other.binary_search(pixel).is_ok());
+        other.len() as f32 > MORE * own.len() as f32
+            && kept.count() as f32 >= SAME_PLACE * own.len() as f32
+    }
+}
+
+/// The ray of an object's colour, from black.
+fn color_of(object: &DescribedObject) -> Vec3 {
+    let solids = object.shape.drawn();
+    let color = solids.first().map_or(Rgb::GRAY, |solid| solid.color);
+    Vec3::new(color.red, color.green, color.blue).normalize_or(Vec3::ONE)
+}
+
+/// The object with this silhouette, behind these solids.
+fn described_by(
+    silhouette: &Blob,
+    residual: &mut Residual,
+    nearer: Vec<DrawnSolid>,
+) -> Option<DescribedObject> {
+    let width = residual.seen().width as usize;
+    let mut search = ShapeSearch {
+        residual,
+        kept: nearer,
+        inner: inner(silhouette, width),
+        silhouette,
+    };
+    search.best()
+}
+
+fn solids_of<'d>(objects: impl Iterator<Item = &'d DescribedObject>) -> Vec<DrawnSolid> {
     let solids = (2..).zip(objects).map(|(number, object)| {
         let solids = object.shape.drawn().into_iter();
         solids.map(move |solid| DrawnSolid::of(object.pose, &solid, number))

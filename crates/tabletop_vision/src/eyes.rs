@@ -22,8 +22,6 @@ pub struct Eyes {
     camera: Camera,
     table: Table,
     poses: Vec<Option<Pose>>,
-    /// Whether each object was let go since the last picture.
-    let_go: Vec<bool>,
     is_light_unknown: bool,
     /// The memory of the last picture's layers.
     layers: Option<PictureLayers>,
@@ -101,7 +99,6 @@ impl Eyes {
     pub fn new(objects: Vec<KnownObject>, camera: Camera, table: Table) -> Self {
         Self {
             poses: vec![None; objects.len()],
-            let_go: vec![false; objects.len()],
             objects,
             camera,
             table,
@@ -126,13 +123,6 @@ impl Eyes {
     pub fn remember(&mut self, poses: impl IntoIterator<Item = Option<Pose>>) {
         for (own, pose) in self.poses.iter_mut().zip(poses) {
             *own = pose;
-        }
-    }
-
-    /// Lets objects be let go before the next picture: they may have fallen from where they are remembered, however little.
-    pub fn let_go(&mut self, objects: impl IntoIterator<Item = bool>) {
-        for (own, is_let_go) in self.let_go.iter_mut().zip(objects) {
-            *own = is_let_go;
         }
     }
 
@@ -183,7 +173,7 @@ impl Eyes {
         };
         let residual = Residual::new(picture, layers, self.camera);
         let mut arrangement = ObjectArrangement::empty(&self.objects, residual);
-        arrangement.begin(&before, &self.let_go);
+        arrangement.begin(&before);
         if self.is_light_unknown {
             for _ in 0..RELIGHTINGS {
                 let mut scene = ground.clone();
@@ -213,7 +203,6 @@ impl Eyes {
         });
         let noise = arrangement.noise.sqrt();
         self.layers = Some(arrangement.residual.into_layers());
-        self.let_go.fill(false);
         for (own, seen) in self.poses.iter_mut().zip(&objects) {
             *own = seen.pose;
         }

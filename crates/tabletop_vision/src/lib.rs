@@ -54,6 +54,6 @@ mod support;
 
 pub use calibration::calibrated;
 pub use clutter::Clutter;
-pub use description::{DescribedObject, described};
+pub use description::{DescribedObject, Descriptions};
 pub use eyes::{Eyes, KnownScenery, ObjectPercept, Percept, PoseDeviation, Visibility};
 pub use known::{KnownObject, YawSymmetry, with_guides};

@@ -1,6 +1,6 @@
 //! The stage of a robot that is told no pose of an object: it sees them through its head camera.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use bevy::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid};
@@ -39,8 +39,6 @@ pub struct SeeingStage<'a> {
     belief: Sight,
     /// The object in each gripper, and its pose in the frame of the end effector.
     held: Vec<Option<(String, Pose)>>,
-    /// The objects that were let go and not seen since: they have fallen from where they were held.
-    let_go: BTreeSet<String>,
 }
 
 /// Does a task with the objects that the robot sees. It counts as done only if it is done in the world as it is.
@@ -103,7 +101,6 @@ impl<'a> SeeingStage<'a> {
         let mut stage = Self {
             known: known.collect(),
             held: vec![None; belief.limbs.len()],
-            let_go: BTreeSet::new(),
             app,
             body,
             observer,
@@ -146,7 +143,6 @@ impl<'a> SeeingStage<'a> {
             let believed = self.belief.objects.get(name);
             believed.map(|it| it.pose)
         }));
-        eyes.let_go(free.iter().map(|(name, _)| self.let_go.contains(name)));
         let mut percept = eyes.look(&look.picture, &scenery);
         // Which of several objects that look the same is which, no picture tells, unless it was seen before.
         let known = [&self.belief, self.observer.sight()];
@@ -214,8 +210,7 @@ impl<'a> SeeingStage<'a> {
         for (number, limb) in limbs.iter().enumerate() {
             let end_effector = self.body.end_effector(number, &limb.angles);
             let Some(name) = limb.holds.first().cloned() else {
-                let let_go = self.held[number].take();
-                self.let_go.extend(let_go.map(|(name, _)| name));
+                self.held[number] = None;
                 continue;
             };
             let Some(object) = self.belief.objects.get_mut(&name) else {
@@ -241,7 +236,6 @@ impl<'a> SeeingStage<'a> {
             Some(before) => known.turned_least(pose, before.pose.rotation),
             None => pose,
         };
-        self.let_go.remove(name);
         let truth = self.observer.sight().objects.get(name);
         if let Some(object) = truth {
             let seen = SeenObject {

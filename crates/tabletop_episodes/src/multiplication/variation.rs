@@ -28,6 +28,8 @@ pub struct Variation {
     pub camera: f32,
     /// By which part of it, at most, the brightness of the light in the pictures differs; also its direction and colour. 0 for not at all.
     pub light: f32,
+    /// True if all that the task moves stays in the head camera's picture.
+    pub in_view: bool,
 }
 
 /// Number of arrangements among which one with all goals on the table is searched for.

@@ -238,12 +238,16 @@ impl EarlierCommands {
         }
     }
 
-    /// Notes that the world before a command of this tick can be brought back; the command had emptied these hands before.
+    /// Notes that the world before a command of this tick can be brought back, or before what it did after it had emptied these hands.
     fn keep(&mut self, cause: CommandId, tick: SimTick, released: &[Hand]) {
-        let Some(at) = self.noted.iter().position(|noted| noted.id == cause) else {
+        let Some(noted) = self.noted.iter_mut().find(|noted| noted.id == cause) else {
             return self.forget_changes();
         };
-        let Noted { actor, before, .. } = self.noted.remove(at);
+        let actor = noted.actor;
+        let before = LogMark {
+            replaced: noted.before.replaced.take(),
+            ..noted.before
+        };
         let released = released.iter().map(|&hand| SessionCommand {
             tick: tick.0,
             actor,
@@ -468,6 +472,37 @@ mod tests {
             again.log.course.has_used_robot,
             noted.log.course.has_used_robot
         );
+    }
+
+    #[test]
+    fn a_grasp_that_lets_go_of_something_first_is_undone_in_two_steps() {
+        let (tick, cause) = (SimTick(5), CommandId(0));
+        let grasp = HandCommand::Grasp {
+            hand: Hand::Left,
+            object: "block".into(),
+        };
+        let released = HandFact::Released {
+            cause: Some(cause),
+            hand: Hand::Left,
+            id: "ball".into(),
+        };
+        let kept = SimFact::from(HistoryFact::Kept { cause });
+        let mut earlier = EarlierCommands::default();
+        earlier.note(tick, &[issued(grasp)], false);
+        earlier.end_tick(tick, &[kept.clone(), released.into(), kept]);
+        let mut follow = |fact: HistoryFact| {
+            earlier.follow(&[fact], tick, Paused(false));
+            let names = lines_of(&earlier).into_iter().map(|line| {
+                let is_release = line.contains("Release");
+                if is_release { "release" } else { "grasp" }
+            });
+            names.collect::<Vec<_>>()
+        };
+        let (undone, redone) = (HistoryFact::Undone { cause }, HistoryFact::Redone { cause });
+        assert_eq!(follow(undone.clone()), ["release"]);
+        assert!(follow(undone).is_empty());
+        assert_eq!(follow(redone.clone()), ["release"]);
+        assert_eq!(follow(redone), ["grasp"]);
     }
 
     #[test]

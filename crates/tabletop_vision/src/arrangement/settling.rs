@@ -12,6 +12,8 @@ use crate::{
 
 /// The distance of an object from its support, in units, in which no picture tells whether it touches.
 const TOUCHING: f32 = 0.03;
+/// How far from its best place least squares may leave an object, in units.
+const UNPOLISHED: f32 = 0.02;
 
 impl ObjectArrangement<'_, '_> {
     /// Refines an object among the others: along its guide, on what it stands on, or in the air. What it guides moves with it. Returns by how much, in
@@ -116,6 +118,13 @@ impl ObjectArrangement<'_, '_> {
                 false => (free, free_trial.gain),
             };
             let allowance = self.allowance * gain.abs() + 20.0 * self.noise.max(1.0);
+            // Least squares may have stopped before the best place on a support, and only that tells whether the object hovers.
+            let best = best.map(
+                |(placement, standing)| match standing.gain <= gain + allowance {
+                    true => (placement, standing),
+                    false => refinement.polished(placement, UNPOLISHED),
+                },
+            );
             settled = match best {
                 Some((placement, standing))
                     if standing.gain <= gain + allowance

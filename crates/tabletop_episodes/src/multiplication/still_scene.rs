@@ -2,18 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use bevy::math::{Quat, Vec3};
+use bevy::math::{BVec3, Vec3};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
 use tabletop_core::{HeadCamera, ObjectSpec, Picture};
-use tabletop_episodes::multiplication::VariedBeginning;
 use tabletop_geometry::Pose;
-use tabletop_task::{Binding, Reference, Symmetry, Task, TaskStep, Turns};
+use tabletop_task::{Binding, Reference, Task, TaskStep};
 
-use crate::label::Heading;
+use super::VariedBeginning;
 
 /// Objects on a table before the head camera.
 #[derive(Clone, Debug)]
-pub(crate) struct StillScene {
+pub struct StillScene {
+    /// The head camera.
     pub camera: Camera,
     table: DrawnSolid,
     /// The objects, with their present poses.
@@ -21,10 +21,8 @@ pub(crate) struct StillScene {
     first: BTreeMap<String, Pose>,
 }
 
-/// The largest part across of the axis of a turn that is about the vertical.
-const UPRIGHT: f32 = 0.02;
-
 impl StillScene {
+    /// The scene of a beginning.
     pub fn of(beginning: &VariedBeginning) -> Self {
         let table = &beginning.scene.table;
         let head = HeadCamera {
@@ -59,18 +57,50 @@ impl StillScene {
         picture
     }
 
-    /// True if the camera sees this point, were nothing before it.
-    pub fn sees(&self, point: Vec3) -> bool {
+    /// True if an object would be wholly in the picture with this pose, were nothing before it.
+    pub fn has_in_view(&self, id: &str, pose: Pose) -> bool {
+        let mut objects = self.objects.iter();
+        let Some(object) = objects.find(|object| object.id == id) else {
+            return false;
+        };
+        let bounds = object.shape.bounds(Pose::IDENTITY);
+        let mut corners = (0..8).map(|corner| {
+            let is_high = BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0);
+            pose * Vec3::select(is_high, bounds.high, bounds.low)
+        });
+        corners.all(|corner| self.sees(corner))
+    }
+
+    fn sees(&self, point: Vec3) -> bool {
         let last = [self.camera.width, self.camera.height].map(|side| side as f32 - 1.0);
         let pixel = self.camera.pixel_of(point);
         pixel.is_some_and(|at| (0.0..=last[0]).contains(&at.x) && (0.0..=last[1]).contains(&at.y))
     }
 
+    /// True if all that a task moves is in view, wherever its steps take and put it.
+    pub fn keeps_in_view(&self, task: &Task, binding: &Binding) -> bool {
+        let mut scene = self.clone();
+        task.steps.iter().all(|step| {
+            let Some(id) = binding.object(&step.object) else {
+                return false;
+            };
+            let goal = scene.goal(step, binding);
+            let mut ends = scene.pose(id).into_iter().chain(goal);
+            let is_seen = ends.all(|end| scene.has_in_view(id, end));
+            if let Some(goal) = goal {
+                scene.put(id, goal);
+            }
+            is_seen
+        })
+    }
+
+    /// The pose of an object.
     pub fn pose(&self, id: &str) -> Option<Pose> {
         let mut objects = self.objects.iter();
         Some(objects.find(|object| object.id == id)?.pose)
     }
 
+    /// Gives an object another pose.
     pub fn put(&mut self, id: &str, pose: Pose) {
         let mut objects = self.objects.iter_mut();
         if let Some(object) = objects.find(|object| object.id == id) {
@@ -130,71 +160,5 @@ fn referred(step: &TaskStep) -> Option<&str> {
     match &step.goal.as_ref()?.reference {
         Reference::Object { object } => Some(object),
         Reference::Table | Reference::PlaceOf { .. } | Reference::Itself => None,
-    }
-}
-
-/// The heading of an object with this symmetry.
-pub(crate) fn heading(symmetry: &Symmetry, pose: Pose) -> Heading {
-    let yaw_of = |rotation: Quat| 2.0 * libm::atan2f(rotation.z, rotation.w);
-    let yaws: Vec<f32> = match &symmetry.turns {
-        Turns::Finite(turns) => {
-            let alike = turns.iter().map(|turn| pose.rotation * *turn);
-            let is_upright = |rotation: &Quat| {
-                let turn = *rotation * pose.rotation.inverse();
-                turn.x.abs().max(turn.y.abs()) < UPRIGHT
-            };
-            alike.filter(is_upright).map(yaw_of).collect()
-        }
-        Turns::About { axis, ends_alike } => {
-            let axis = pose.rotation * *axis;
-            let is_upright = axis.truncate().length() < UPRIGHT;
-            let ends = [axis, -axis];
-            let ends = match (is_upright, ends_alike) {
-                (true, _) => &ends[..0],
-                (false, false) => &ends[..1],
-                (false, true) => &ends[..],
-            };
-            ends.iter().map(|end| libm::atan2f(end.y, end.x)).collect()
-        }
-        Turns::Any => Vec::new(),
-    };
-    Heading::of(&yaws)
-}
-
-#[cfg(test)]
-mod tests {
-    use tabletop_core::Shape;
-    use tabletop_geometry::Rgb;
-
-    use super::*;
-    use crate::label::Yaw;
-
-    fn yaw(span: Vec3, degrees: Vec3) -> Option<Yaw> {
-        let color = Rgb::RED;
-        let symmetry = Symmetry::of(&Shape::Block { span, color });
-        heading(&symmetry, Pose::from_degrees(Vec3::ZERO, degrees)).yaw()
-    }
-
-    #[test]
-    fn a_heading_has_the_fold_of_the_object_as_it_stands() {
-        let brick = Vec3::new(2.0, 1.0, 1.0);
-        for (span, turn, fold) in [
-            (Vec3::ONE, Vec3::ZERO, 4),
-            (Vec3::ONE, Vec3::X * 90.0, 4),
-            (brick, Vec3::ZERO, 2),
-            (brick, Vec3::Y * 90.0, 4),
-        ] {
-            let found = yaw(span, turn + Vec3::Z * 20.0).unwrap();
-            assert_eq!(found.fold, fold, "{span} {turn}");
-            let period = std::f32::consts::TAU / fold as f32;
-            let rest = (found.angle - 20_f32.to_radians()).rem_euclid(period / 2.0);
-            assert!(
-                rest.min(period / 2.0 - rest) < 1e-3,
-                "{span} {turn}: {found:?}"
-            );
-        }
-        let color = Rgb::RED;
-        let ball = Symmetry::of(&Shape::Sphere { radius: 1.0, color });
-        assert_eq!(heading(&ball, Pose::IDENTITY).yaw(), None);
     }
 }
