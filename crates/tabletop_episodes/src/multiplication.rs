@@ -10,10 +10,12 @@ mod operated;
 mod performance;
 mod still_scene;
 mod variation;
+mod varied_beginning;
 mod way;
 
 pub use still_scene::StillScene;
 pub use variation::{Variation, with_colors_exchanged};
+pub use varied_beginning::VariedBeginning;
 
 use std::{fmt, io, path::Path};
 
@@ -22,10 +24,9 @@ use serde_json::{Value, json};
 use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_controller::Sight;
 use tabletop_core::{
-    HeadCamera, Light, ObjectSpec, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec,
-    StepApp as _, Table, WriteCommand as _,
+    HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
+    Table, WriteCommand as _,
 };
-use tabletop_geometry::Pose;
 use tabletop_kinematics::ModelError;
 use tabletop_planner::{Before, PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{
@@ -62,23 +63,6 @@ pub struct Multiplication {
     seed: u64,
     /// That of the recording's files.
     recorded: Fingerprint,
-}
-
-/// The beginning of a demonstration that is made from another.
-#[derive(Clone, Debug)]
-pub struct VariedBeginning {
-    /// The scene.
-    pub scene: SceneSpec,
-    /// The objects of the scene, with their poses.
-    pub objects: Vec<ObjectSpec>,
-    /// The objects that take the roles of the task.
-    pub binding: Binding,
-    /// The pose of the head camera, if it is not on the robot's head.
-    pub mount: Option<Pose>,
-    /// The light in its pictures.
-    pub light: Light,
-    /// The seed of the robot's search for paths.
-    seed: u64,
 }
 
 /// A robot that demonstrates.

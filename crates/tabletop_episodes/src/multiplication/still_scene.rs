@@ -8,7 +8,7 @@ use tabletop_core::{HeadCamera, ObjectSpec, Picture};
 use tabletop_geometry::Pose;
 use tabletop_task::{Binding, Reference, Task, TaskStep};
 
-use super::VariedBeginning;
+use super::varied_beginning::VariedBeginning;
 
 /// Objects on a table before the head camera.
 #[derive(Clone, Debug)]

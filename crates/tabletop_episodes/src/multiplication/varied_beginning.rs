@@ -1,0 +1,22 @@
+//! Beginnings of demonstrations that are made from another.
+
+use tabletop_core::{Light, ObjectSpec, SceneSpec};
+use tabletop_geometry::Pose;
+use tabletop_task::Binding;
+
+/// The beginning of a demonstration that is made from another.
+#[derive(Clone, Debug)]
+pub struct VariedBeginning {
+    /// The scene.
+    pub scene: SceneSpec,
+    /// The objects of the scene, with their poses.
+    pub objects: Vec<ObjectSpec>,
+    /// The objects that take the roles of the task.
+    pub binding: Binding,
+    /// The pose of the head camera, if it is not on the robot's head.
+    pub mount: Option<Pose>,
+    /// The light in its pictures.
+    pub light: Light,
+    /// The seed of the robot's search for paths.
+    pub(super) seed: u64,
+}
