@@ -4,9 +4,13 @@ use bevy::prelude::*;
 
 use crate::{RestingSystems, rest};
 
-/// Number of ticks in which nothing can happen unless the user acts; 0 while something moves.
+/// Number of ticks in which nothing can happen unless the user acts, as it was at the end of the last frame; 0 while something moves.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Idle(pub u64);
+
+/// The ticks that the next tick may pass over.
+#[derive(Resource, Default)]
+struct PassedOver(u64);
 
 /// Publishes [`Idle`], and passes over such ticks when frames are far apart.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,6 +19,7 @@ pub struct IdlePlugin;
 impl Plugin for IdlePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Idle>()
+            .init_resource::<PassedOver>()
             .add_systems(FixedFirst, catch_up.in_set(RestingSystems))
             .add_systems(Last, look_for_rest);
     }
@@ -25,12 +30,13 @@ fn look_for_rest(world: &mut World) {
     let ticks = rest::ticks_of_rest(world);
     let idle = Idle(if may_pass_over { ticks } else { 0 });
     world.resource_mut::<Idle>().set_if_neq(idle);
+    world.resource_mut::<PassedOver>().0 = idle.0;
 }
 
 /// Passes over the ticks of a frame in which nothing could happen, except the last one. Frames may then be far apart, and the
 /// user's next command is still carried out in one tick, as in any other frame.
 fn catch_up(world: &mut World) {
-    let Idle(most) = std::mem::take(&mut *world.resource_mut::<Idle>());
+    let PassedOver(most) = std::mem::take(&mut *world.resource_mut::<PassedOver>());
     let time = world.resource::<Time<Fixed>>();
     let waiting = time.overstep().as_nanos() / time.timestep().as_nanos();
     let ticks = most.min(u64::try_from(waiting).unwrap_or(u64::MAX));
@@ -74,6 +80,21 @@ mod tests {
     fn made(app: &mut App, frames: usize) -> Vec<u64> {
         (0..frames).for_each(|_| app.update());
         std::mem::take(&mut app.world_mut().resource_mut::<Made>().0)
+    }
+
+    #[test]
+    fn whoever_asks_during_a_frame_learns_that_the_world_rests() {
+        #[derive(Resource, Default)]
+        struct Learned(Vec<bool>);
+        let mut app = app();
+        app.init_resource::<Learned>()
+            .add_systems(Update, |idle: Res<Idle>, mut learned: ResMut<Learned>| {
+                learned.0.push(*idle != Idle(0))
+            });
+        app.finish();
+        app.cleanup();
+        made(&mut app, 20);
+        assert_eq!(app.world().resource::<Learned>().0[10..], [true; 10]);
     }
 
     #[test]

@@ -15,12 +15,16 @@ pub(crate) mod mouse;
 pub(crate) mod navigate;
 pub(crate) mod object_keys;
 pub(crate) mod operable;
+#[cfg(all(test, feature = "gamepad"))]
+mod pad_tests;
 pub(crate) mod pick;
 pub(crate) mod plane;
 pub(crate) mod pointer;
+pub(crate) mod recording_keys;
 pub(crate) mod regarded;
 pub(crate) mod robot_keys;
 pub(crate) mod script_control;
 pub(crate) mod snapshot;
+pub(crate) mod travel;
 pub(crate) mod turns;
 pub(crate) mod wheel;

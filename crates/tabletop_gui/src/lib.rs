@@ -127,6 +127,8 @@ fn add_parts(app: &mut App) {
         panels::quit::plugin,
         input::mechanism_keys::plugin,
         input::key_moves::plugin,
+        input::recording_keys::plugin,
+        panels::window_keys::plugin,
         input::measure::plugin,
         input::clear_view::plugin,
         panels::context_menu::plugin,

@@ -29,6 +29,7 @@ mod test_click;
 pub(crate) mod timeline;
 pub(crate) mod toasts;
 pub(crate) mod window;
+pub(crate) mod window_keys;
 
 pub use arrangement::Panels;
 pub use browser::{Browser, Purpose};

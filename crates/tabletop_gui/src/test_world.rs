@@ -7,7 +7,7 @@ use tabletop_core::{
 use tabletop_geometry::{Pose, Rgb};
 use tabletop_user::{UserCamera, UserPlugin};
 
-use crate::input::pointer::Pointer;
+use crate::input::pointer::{Buttons, Pointer};
 
 /// Location of the user's camera, which looks along Y.
 pub(crate) const EYE: Vec3 = Vec3::new(0.0, -12.0, 8.0);
@@ -27,7 +27,7 @@ impl TestWorld {
         app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin, plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<ButtonInput<KeyCode>>()
-            .init_resource::<ButtonInput<MouseButton>>();
+            .init_resource::<Buttons>();
         app.world_mut().spawn(Table::default());
         app.world_mut().spawn((
             UserCamera,
@@ -105,7 +105,7 @@ impl TestWorld {
         self.app.world_mut().resource_mut()
     }
 
-    fn buttons(&mut self) -> Mut<'_, ButtonInput<MouseButton>> {
+    fn buttons(&mut self) -> Mut<'_, Buttons> {
         self.app.world_mut().resource_mut()
     }
 

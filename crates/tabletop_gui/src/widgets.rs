@@ -2,6 +2,7 @@
 
 pub(crate) mod button;
 pub(crate) mod clipboard;
+pub(crate) mod focus;
 pub(crate) mod icon;
 pub(crate) mod name;
 pub(crate) mod slider;

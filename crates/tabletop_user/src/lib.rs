@@ -32,7 +32,8 @@ pub use held_axes::HeldAxes;
 pub use imitating::{Imitating, TaskOrder};
 pub use keymap::{
     Action, ActionGroup, BindingError, JointKeyError, KeyBinding, KeyLetters, KeySystems,
-    KeyboardFocus, Keymap, Keys, Modifiers, Situation, Way, was_struck,
+    KeyboardFocus, Keymap, Keys, Modifiers, PAD_CONTROLS, PadControl, Pads, Situation, StickWay,
+    Way, was_struck,
 };
 pub use measuring::Measuring;
 pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};

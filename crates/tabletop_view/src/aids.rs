@@ -34,11 +34,11 @@ const CHOSEN: Color = Color::srgb(0.25, 0.77, 0.71);
 
 /// Axes, shadow and sections.
 #[derive(Default, Reflect, GizmoConfigGroup)]
-struct ThinLines;
+pub(crate) struct ThinLines;
 
 /// The outline of the held object.
 #[derive(Default, Reflect, GizmoConfigGroup)]
-struct ThickLines;
+pub(crate) struct ThickLines;
 
 pub(crate) fn plugin(app: &mut App) {
     app.insert_gizmo_config(ThinLines, lines(2.0, THIN_IN_FRONT))

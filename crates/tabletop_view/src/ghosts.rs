@@ -12,7 +12,7 @@ struct GhostSolid;
 
 /// The lines that lead to ghosts.
 #[derive(Default, Reflect, GizmoConfigGroup)]
-struct GhostLines;
+pub(crate) struct GhostLines;
 
 /// Height of a line above its higher end, in units.
 const RISE: f32 = 1.5;

@@ -16,6 +16,7 @@ mod silhouette;
 mod surface;
 #[cfg(test)]
 mod test_app;
+mod tickless_lines;
 mod viewpoint;
 mod visual;
 
@@ -49,6 +50,10 @@ impl Plugin for ViewPlugin {
             aids::plugin,
             measured::plugin,
         ));
+    }
+
+    fn finish(&self, app: &mut App) {
+        tickless_lines::finish(app);
     }
 }
 

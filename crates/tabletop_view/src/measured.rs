@@ -13,7 +13,7 @@ const COLOR: Color = Color::srgb(1.0, 0.3, 0.8);
 
 /// Lines that nothing hides.
 #[derive(Default, Reflect, GizmoConfigGroup)]
-struct MeasuredLines;
+pub(crate) struct MeasuredLines;
 
 pub(crate) fn plugin(app: &mut App) {
     let config = GizmoConfig {

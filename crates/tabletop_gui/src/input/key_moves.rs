@@ -8,7 +8,11 @@ use tabletop_core::{
 };
 use tabletop_user::{Action, Chosen, Dragging, KeySystems, Keys, UserCamera, was_struck};
 
-use crate::input::turns::{AXES, TurnSums};
+use crate::input::{
+    around::Around,
+    travel::{self, Travel},
+    turns::{AXES, TurnSums},
+};
 
 /// A step of a moved object, in units, and of a turned one, in degrees.
 const STEP: f32 = 0.1;
@@ -39,27 +43,30 @@ const TURNS: [[Action; 2]; 3] = [
 ];
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<TurnSums>().add_systems(
-        RunFixedMainLoop,
-        (
-            forget_lost,
-            select(Hand::Left).run_if(was_struck(Action::HandLeft)),
-            select(Hand::Right).run_if(was_struck(Action::HandRight)),
-            select(Hand::Both).run_if(was_struck(Action::HandBoth)),
-            select(Hand::Any).run_if(was_struck(Action::HandAny)),
-            choose(false).run_if(was_struck(Action::NextObject)),
-            choose(true).run_if(was_struck(Action::PreviousObject)),
+    app.init_resource::<TurnSums>()
+        .init_resource::<Travel>()
+        .add_systems(
+            RunFixedMainLoop,
             (
-                take_or_release.run_if(was_struck(Action::TakeOrRelease)),
-                shift,
-                turn,
+                forget_lost,
+                select(Hand::Left).run_if(was_struck(Action::HandLeft)),
+                select(Hand::Right).run_if(was_struck(Action::HandRight)),
+                select(Hand::Both).run_if(was_struck(Action::HandBoth)),
+                select(Hand::Any).run_if(was_struck(Action::HandAny)),
+                choose(false).run_if(was_struck(Action::NextObject)),
+                choose(true).run_if(was_struck(Action::PreviousObject)),
+                (
+                    take_or_release.run_if(was_struck(Action::TakeOrRelease)),
+                    shift,
+                    turn,
+                    travel::follow,
+                )
+                    .chain()
+                    .run_if(Paused::is_running),
             )
                 .chain()
-                .run_if(Paused::is_running),
-        )
-            .chain()
-            .in_set(KeySystems),
-    );
+                .in_set(KeySystems),
+        );
 }
 
 fn forget_lost(index: Res<ObjectIndex>, mut chosen: ResMut<Chosen>) {
@@ -126,7 +133,8 @@ impl Handling<'_, '_> {
     }
 }
 
-fn take_or_release(handling: Handling, mut commands: CommandWriter) {
+fn take_or_release(handling: Handling, mut travel: ResMut<Travel>, mut commands: CommandWriter) {
+    *travel = Travel::default();
     let release = HandCommand::Release(handling.hands.selected);
     let command = match handling.is_held() {
         true => Some(release),
@@ -140,6 +148,8 @@ fn shift(
     time: Res<Time<Real>>,
     handling: Handling,
     dragging: Res<Dragging>,
+    around: Around,
+    mut travel: ResMut<Travel>,
     mut repeats: Local<Repeats>,
     mut commands: CommandWriter,
 ) {
@@ -149,7 +159,10 @@ fn shift(
     };
     let every = Duration::from_secs_f32(step / SPEED);
     let steps = repeats.steps(&keys, &MOVES, every, time.elapsed());
-    let Some(location) = handling.location().filter(|_| steps != [0; 3]) else {
+    let Some(object) = handling.chosen.0.filter(|_| steps != [0; 3]) else {
+        return;
+    };
+    let Some(there) = around.of(object) else {
         return;
     };
     let hand = handling.hands.selected;
@@ -159,19 +172,30 @@ fn shift(
         .zip(steps)
         .map(|(axis, steps)| axis * steps as f32 * step)
         .sum();
+    let to = |place| match dragging.snaps_to_grid {
+        true => on_grid(place, offset),
+        false => place,
+    };
+    commands.write_batch(Actor::Key, handling.grasp());
+    if dragging.goes_on_top {
+        if !handling.is_held() {
+            *travel = Travel::default();
+        }
+        travel.go_on(object, &there, offset, to);
+        return;
+    }
     let command = match dragging.snaps_to_grid {
         true => HandCommand::MoveTo {
             hand,
-            location: on_grid(location, offset),
+            location: to(there.here + offset),
         },
         false => HandCommand::MoveBy { hand, offset },
     };
-    commands.write_batch(Actor::Key, handling.grasp().into_iter().chain([command]));
+    commands.write(Actor::Key, command);
 }
 
-/// The place a step on, on the lines of the grid along the table.
-fn on_grid(location: Vec3, offset: Vec3) -> Vec3 {
-    let mut place = location + offset;
+/// The place on the lines of the grid along the table that is next to one that was reached by an offset.
+fn on_grid(mut place: Vec3, offset: Vec3) -> Vec3 {
     for axis in (0..2).filter(|&axis| offset[axis] != 0.0) {
         place[axis] = (place[axis] / Dragging::GRID).round() * Dragging::GRID;
     }
@@ -211,11 +235,49 @@ fn turn(
 struct Repeats {
     /// The time of the next one.
     next: Duration,
+    /// The time of the last frame.
+    last: Duration,
+    /// The parts of steps that a gamepad has pushed.
+    pushed: [f32; 3],
 }
 
 impl Repeats {
     /// The steps in this frame along each axis.
     fn steps(
+        &mut self,
+        keys: &Keys,
+        actions: &[[Action; 2]; 3],
+        every: Duration,
+        now: Duration,
+    ) -> [i32; 3] {
+        let pushed = self.pushed_steps(keys, actions, every, now);
+        let struck = self.struck_steps(keys, actions, every, now);
+        std::array::from_fn(|axis| pushed[axis] + struck[axis])
+    }
+
+    /// The steps of sticks and triggers, which move the faster the farther they are pushed.
+    fn pushed_steps(
+        &mut self,
+        keys: &Keys,
+        actions: &[[Action; 2]; 3],
+        every: Duration,
+        now: Duration,
+    ) -> [i32; 3] {
+        let passed = now.saturating_sub(self.last).div_duration_f32(every);
+        let passed = passed.min(MOST_STEPS as f32);
+        self.last = now;
+        std::array::from_fn(|axis| {
+            let [plus, minus] = actions[axis];
+            let pushed = match keys.push(plus, minus) {
+                0.0 => 0.0,
+                push => self.pushed[axis] + push * passed,
+            };
+            self.pushed[axis] = pushed.fract();
+            pushed.trunc() as i32
+        })
+    }
+
+    fn struck_steps(
         &mut self,
         keys: &Keys,
         actions: &[[Action; 2]; 3],
@@ -258,6 +320,10 @@ mod tests {
             .insert_resource(TimeUpdateStrategy::ManualDuration(frame));
         test.block("red", Vec3::Z);
         test.block("blue", Vec3::new(5.1, 0.0, 1.0));
+        test.app.insert_resource(Dragging {
+            goes_on_top: false,
+            ..default()
+        });
         test
     }
 
@@ -364,6 +430,7 @@ mod tests {
     fn with_the_grid_a_step_goes_to_its_next_line() {
         let mut test = world();
         test.app.insert_resource(Dragging {
+            goes_on_top: false,
             snaps_to_grid: true,
             turns_in_steps: true,
             ..default()

@@ -5,7 +5,7 @@ use tabletop_user::Measuring;
 
 use crate::input::{
     pick::Pickable,
-    pointer::{MouseSystems, Pointer},
+    pointer::{Buttons, MouseSystems, Pointer},
 };
 
 pub(crate) fn plugin(app: &mut App) {
@@ -18,7 +18,7 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 fn set_point(
-    buttons: Res<ButtonInput<MouseButton>>,
+    buttons: Res<Buttons>,
     pointer: Res<Pointer>,
     pickable: Pickable,
     mut measuring: ResMut<Measuring>,

@@ -10,8 +10,7 @@ use tabletop_user::{CameraMotion, UserCamera};
 use crate::input::{
     mouse::MousePress,
     pick::Pickable,
-    pointer::MouseSystems,
-    pointer::{Pointer, SLACK, aim},
+    pointer::{Buttons, MouseSystems, Pointer, SLACK, aim},
     wheel::notches,
 };
 
@@ -56,6 +55,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Gesture>()
         .init_resource::<MousePress>()
         .init_resource::<Pointer>()
+        .init_resource::<Buttons>()
         .add_message::<MouseWheel>()
         .add_message::<PinchGesture>()
         .add_systems(
@@ -67,7 +67,7 @@ pub(crate) fn plugin(app: &mut App) {
         );
 }
 
-pub(crate) fn come_up(buttons: Res<ButtonInput<MouseButton>>, mut gesture: ResMut<Gesture>) {
+pub(crate) fn come_up(buttons: Res<Buttons>, mut gesture: ResMut<Gesture>) {
     if gesture
         .button()
         .is_some_and(|button| !buttons.pressed(button))
@@ -77,7 +77,7 @@ pub(crate) fn come_up(buttons: Res<ButtonInput<MouseButton>>, mut gesture: ResMu
 }
 
 fn press(
-    buttons: Res<ButtonInput<MouseButton>>,
+    buttons: Res<Buttons>,
     pointer: Res<Pointer>,
     pickable: Pickable,
     camera: Single<&Transform, With<UserCamera>>,
@@ -231,10 +231,7 @@ mod tests {
     }
 
     fn press(test: &mut TestWorld, button: MouseButton) {
-        let mut buttons = test
-            .app
-            .world_mut()
-            .resource_mut::<ButtonInput<MouseButton>>();
+        let mut buttons = test.app.world_mut().resource_mut::<Buttons>();
         buttons.press(button);
     }
 
@@ -321,10 +318,7 @@ mod tests {
             assert_eq!(frame(&mut test), []);
             point(&mut test, [102.0, 101.0], Vec3::X * 0.1);
             assert_eq!(frame(&mut test), []);
-            let mut buttons = test
-                .app
-                .world_mut()
-                .resource_mut::<ButtonInput<MouseButton>>();
+            let mut buttons = test.app.world_mut().resource_mut::<Buttons>();
             buttons.release(button);
             point(&mut test, [200.0, 100.0], Vec3::X);
             assert_eq!(frame(&mut test), []);

@@ -1,22 +1,63 @@
 //! The arrangement of panels: which are open, and their places (report section 2.4).
 
+mod columns;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::ecs::resource::Resource;
-use bevy_egui::egui::{Pos2, Rect, Vec2, vec2};
+use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
 use serde::{Deserialize, Serialize};
 
-use crate::{panels::panel::Panel, widgets::style::GAP};
+use self::columns::Columns;
+use crate::{
+    panels::panel::{Edge, Panel},
+    widgets::style::GAP,
+};
 
-/// The open panels, and their places. At first only Status is open, and all are aligned at the left.
+/// So much lower is each panel that lies over the others than the one before it, in points: its title is seen.
+const CASCADE: f32 = 32.0;
+
+/// The open panels, and their places. At first only Status is open.
 #[derive(Resource, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Panels {
     open: BTreeSet<Panel>,
     /// Those that the user has moved, in points from the upper left corner of the window.
     moved: BTreeMap<Panel, (f32, f32)>,
-    /// The order in which all of them are stacked at the left.
+    /// The order in which all of them are stacked.
     stack: Vec<Panel>,
+    alignment: Alignment,
+}
+
+/// Where the panels stand that the user has not moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Alignment {
+    /// At both sides, so that the table between them is seen.
+    #[default]
+    Sides,
+    /// All at the left.
+    Left,
+}
+
+impl Alignment {
+    /// The order in which panels are stacked. At the sides, the first places are of those that a demonstration needs.
+    const fn order(self) -> [Panel; Panel::ALL.len()] {
+        match self {
+            Self::Sides => [
+                Panel::Status,
+                Panel::DemonstrationTools,
+                Panel::Pose,
+                Panel::Objects,
+                Panel::Timeline,
+                Panel::Camera,
+                Panel::Robot,
+                Panel::Recordings,
+                Panel::Plots,
+                Panel::Messages,
+            ],
+            Self::Left => Panel::ALL,
+        }
+    }
 }
 
 impl Default for Panels {
@@ -24,7 +65,8 @@ impl Default for Panels {
         Self {
             open: BTreeSet::from([Panel::Status]),
             moved: BTreeMap::new(),
-            stack: Panel::ALL.into(),
+            stack: Alignment::default().order().into(),
+            alignment: Alignment::default(),
         }
     }
 }
@@ -68,10 +110,11 @@ impl Panels {
         }
     }
 
-    /// Stacks the open panels at the left from the top downwards. Those that are closed get the places below.
-    pub fn align(&mut self) {
+    /// Stacks the open panels from the top downwards, even those that the user has moved. Those that are closed get the places below.
+    pub(crate) fn align(&mut self, alignment: Alignment) {
+        self.alignment = alignment;
         self.moved.clear();
-        self.stack = Panel::ALL.into();
+        self.stack = alignment.order().into();
         self.stack.sort_by_key(|panel| !self.open.contains(panel));
     }
 
@@ -80,41 +123,57 @@ impl Panels {
         self.moved.insert(panel, place.into());
     }
 
+    /// True if a panel lies along the lower edge of the desk, as wide as that.
+    pub(crate) fn is_docked(&self, panel: Panel) -> bool {
+        panel.edge() == Edge::Bottom && !self.moved.contains_key(&panel)
+    }
+
     /// The upper left corner of a panel, so that all of it is seen on the desk if it is not larger than that.
     pub(crate) fn place(&self, panel: Panel, desk: Rect, size: impl Fn(Panel) -> Vec2) -> Pos2 {
         let place = match self.moved.get(&panel) {
             Some(&moved) => moved.into(),
-            None => self.slot(panel, desk, &size),
+            None if self.is_docked(panel) => desk.left_bottom(),
+            None => self.slot(panel, self.undocked(desk, &size), &size),
         };
         kept_on(desk, place, size(panel))
     }
 
-    /// The place of a panel in the stack. Where the desk is too low for all, it goes on in another column; a panel that fits below an
-    /// earlier column, and is no wider, goes there.
+    /// The part of the desk above the docked panels.
+    fn undocked(&self, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Rect {
+        let docked = self.open.iter().filter(|&&panel| self.is_docked(panel));
+        let height: f32 = docked.map(|&panel| size(panel).y).sum();
+        desk.with_max_y(desk.bottom() - height)
+    }
+
+    /// The place of a panel in the columns at its side, or over the others where there is no more room.
     fn slot(&self, panel: Panel, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Pos2 {
-        let mut columns = vec![Vec2::ZERO];
-        let mut slot = (0, 0.0);
-        for &next in &self.stack {
+        let [mut left, mut right] = [Columns::new(desk.height()), Columns::new(desk.height())];
+        let mut over = 0.0;
+        let mut slot = desk.min;
+        for &next in self.stack.iter().filter(|&&next| !self.is_docked(next)) {
             let size = size(next);
-            let last = columns.len() - 1;
-            let has_room = |(i, column): (usize, &Vec2)| {
-                let is_low = column.y == 0.0 || GAP + column.y + size.y <= desk.height();
-                is_low && (i == last || size.x <= column.x)
+            let room = desk.width() - left.width() - right.width() - GAP;
+            let is_left = match self.alignment {
+                Alignment::Sides => next.edge() == Edge::Left,
+                Alignment::Left => true,
             };
-            let column = columns.iter().enumerate().position(has_room);
-            let column = column.unwrap_or_else(|| {
-                columns.push(Vec2::ZERO);
-                columns.len() - 1
+            let stacked = match is_left {
+                true => left.stack(size, room).map(|at| desk.min + at),
+                false => right
+                    .stack(size, room)
+                    .map(|at| pos2(desk.right() - at.x - size.x, desk.top() + at.y)),
+            };
+            let place = stacked.unwrap_or_else(|| {
+                let middle = (desk.width() - size.x) / 2.0;
+                let place = desk.min + vec2(middle, GAP + over);
+                over += CASCADE;
+                place
             });
             if next == panel {
-                slot = (column, columns[column].y);
+                slot = place;
             }
-            columns[column].x = columns[column].x.max(size.x);
-            columns[column].y += size.y + GAP;
         }
-        let (column, below) = slot;
-        let beside: f32 = columns[..column].iter().map(|column| column.x + GAP).sum();
-        desk.min + vec2(GAP + beside, GAP + below)
+        slot
     }
 
     /// Completes an arrangement from a file, which may be older than a panel.
@@ -137,8 +196,6 @@ pub(crate) fn kept_on(desk: Rect, place: Pos2, size: Vec2) -> Pos2 {
 
 #[cfg(test)]
 mod tests {
-    use bevy_egui::egui::pos2;
-
     use super::*;
 
     const DESK: Rect = Rect {
@@ -149,7 +206,7 @@ mod tests {
     /// One on which all panels have room.
     const WIDE: Rect = Rect {
         min: Pos2::ZERO,
-        max: pos2(1300.0, 700.0),
+        max: pos2(1700.0, 700.0),
     };
 
     fn size(_: Panel) -> Vec2 {
@@ -171,61 +228,75 @@ mod tests {
         assert_eq!(place(&panels, Panel::Status), pos2(GAP, GAP));
     }
 
+    fn rects(panels: &Panels, desk: Rect) -> [Rect; Panel::ALL.len()] {
+        Panel::ALL.map(|panel| Rect::from_min_size(panels.place(panel, desk, size), size(panel)))
+    }
+
+    #[test]
+    fn every_panel_is_in_the_order_of_each_alignment() {
+        for alignment in [Alignment::Sides, Alignment::Left] {
+            let order = BTreeSet::from(alignment.order());
+            assert_eq!(order, BTreeSet::from(Panel::ALL));
+        }
+    }
+
     #[test]
     fn every_panel_has_a_place_of_its_own_on_the_desk() {
         let mut panels = Panels::default();
         panels.set_all_open(true);
-        let place = |panel| panels.place(panel, WIDE, size);
-        let rects = Panel::ALL.map(|panel| Rect::from_min_size(place(panel), size(panel)));
-        for (i, rect) in rects.iter().enumerate() {
-            assert!(WIDE.contains_rect(*rect), "{:?} at {rect}", Panel::ALL[i]);
-            let others = &rects[..i];
-            assert!(others.iter().all(|other| !other.intersects(*rect)));
+        for alignment in [Alignment::Sides, Alignment::Left] {
+            panels.align(alignment);
+            let rects = rects(&panels, WIDE);
+            for (i, rect) in rects.iter().enumerate() {
+                assert!(WIDE.contains_rect(*rect), "{:?} at {rect}", Panel::ALL[i]);
+                let others = &rects[..i];
+                assert!(others.iter().all(|other| !other.intersects(*rect)));
+            }
         }
     }
 
     #[test]
-    fn a_stack_that_is_too_tall_goes_on_in_another_column() {
-        let panels = Panels::default();
-        let places: Vec<_> = Panel::ALL
-            .into_iter()
-            .map(|panel| panels.place(panel, WIDE, size))
-            .collect();
-        for (i, &place) in places.iter().enumerate() {
-            let (column, row) = ((i / 3) as f32, (i % 3) as f32);
-            let expected = pos2(GAP + column * (300.0 + GAP), GAP + row * (200.0 + GAP));
-            assert_eq!(place, expected);
+    fn panels_stand_at_both_sides_above_the_timeline() {
+        let mut panels = Panels::default();
+        panels.set_open(Panel::Objects, true);
+        let right = 1000.0 - 300.0 - GAP;
+        assert_eq!(place(&panels, Panel::Objects), pos2(right, GAP));
+        panels.set_open(Panel::Timeline, true);
+        assert_eq!(place(&panels, Panel::Timeline), pos2(0.0, 500.0));
+        panels.set_open(Panel::DemonstrationTools, true);
+        panels.set_open(Panel::Camera, true);
+        let below = GAP + 200.0 + GAP;
+        assert_eq!(place(&panels, Panel::DemonstrationTools), pos2(GAP, below));
+        let beside = GAP + 300.0 + GAP;
+        assert_eq!(place(&panels, Panel::Camera), pos2(beside, GAP));
+        panels.align(Alignment::Left);
+        assert_eq!(place(&panels, Panel::Objects), pos2(beside, below));
+        panels.align(Alignment::Sides);
+        assert_eq!(place(&panels, Panel::Objects), pos2(right, GAP));
+    }
+
+    #[test]
+    fn panels_without_room_lie_over_the_others_and_show_their_titles() {
+        let mut panels = Panels::default();
+        panels.set_all_open(true);
+        let rects = rects(&panels, DESK);
+        assert!(rects.iter().all(|rect| DESK.contains_rect(*rect)));
+        let over: Vec<_> = rects.iter().filter(|rect| rect.min.x == 350.0).collect();
+        assert!(over.len() > 1, "{rects:?}");
+        for pair in over.windows(2) {
+            assert_eq!(pair[1].min.y - pair[0].min.y, CASCADE);
         }
     }
 
     #[test]
-    fn a_panel_that_fits_below_an_earlier_column_goes_there() {
-        let panels = Panels::default();
-        let size = |panel: Panel| match panel {
-            Panel::Robot => vec2(300.0, 500.0),
-            Panel::Timeline => vec2(500.0, 100.0),
-            Panel::Status
-            | Panel::Camera
-            | Panel::DemonstrationTools
-            | Panel::Pose
-            | Panel::Objects
-            | Panel::Recordings
-            | Panel::Plots
-            | Panel::Messages => vec2(300.0, 120.0),
-        };
-        let place = |panel| panels.place(panel, DESK, size);
-        let below = |rows: f32| GAP + rows * (120.0 + GAP);
-        assert_eq!(place(Panel::Camera), pos2(GAP, below(1.0)));
-        let second = GAP + 300.0 + GAP;
-        assert_eq!(place(Panel::Robot), pos2(second, GAP));
-        assert_eq!(place(Panel::DemonstrationTools), pos2(GAP, below(2.0)));
-        let under_robot = GAP + 500.0 + GAP;
-        assert_eq!(
-            place(Panel::Timeline),
-            pos2(second, under_robot),
-            "too wide for the first"
-        );
-        assert_eq!(place(Panel::Objects), pos2(GAP, below(4.0)));
+    fn a_timeline_that_is_moved_is_docked_no_longer_until_all_are_aligned() {
+        let mut panels = Panels::default();
+        assert!(panels.is_docked(Panel::Timeline) && !panels.is_docked(Panel::Status));
+        panels.move_to(Panel::Timeline, pos2(100.0, 50.0));
+        assert!(!panels.is_docked(Panel::Timeline));
+        assert_eq!(place(&panels, Panel::Timeline), pos2(100.0, 50.0));
+        panels.align(Alignment::Left);
+        assert!(panels.is_docked(Panel::Timeline));
     }
 
     #[test]
@@ -235,10 +306,11 @@ mod tests {
         panels.set_open(Panel::DemonstrationTools, true);
         panels.set_open(Panel::Robot, true);
         panels.move_to(Panel::Robot, pos2(500.0, 500.0));
-        panels.align();
+        panels.align(Alignment::Left);
         let tall = Rect::from_min_size(Pos2::ZERO, vec2(1000.0, 1e6));
         let place = |panel: &Panel| panels.place(*panel, tall, size);
-        let mut order = Panel::ALL;
+        let mut order: Vec<_> = Panel::ALL.into();
+        order.retain(|&panel| !panels.is_docked(panel));
         order.sort_by_key(|panel| place(panel).y as i64);
         let open = [Panel::Robot, Panel::DemonstrationTools];
         assert_eq!(order[..2], open);

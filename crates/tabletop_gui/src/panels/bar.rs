@@ -11,7 +11,11 @@ use tabletop_user::{Action, Keymap};
 use crate::{
     display::DisplayOffer,
     panels::{
-        arrangement::Panels, display::DisplayOverlay, help::Help, messages::Notices, panel::Panel,
+        arrangement::{Alignment, Panels},
+        display::DisplayOverlay,
+        help::Help,
+        messages::Notices,
+        panel::Panel,
     },
     scale::{ScaleStep, UiScale},
     theme::Theme,
@@ -21,8 +25,25 @@ use crate::{
     },
 };
 
+/// Between two buttons, in points: less than elsewhere, so that all of them are in a row of 1024 points.
+const GAP: f32 = 4.0;
+
 /// Size of the buttons with pictures, in points.
 const ICON_SIZE: egui::Vec2 = egui::vec2(27.0, 23.0);
+
+/// The buttons that align the windows.
+const ALIGNMENTS: [(Icon, &str, Alignment); 2] = [
+    (
+        Icon::AlignLeft,
+        "Align the open windows at the left",
+        Alignment::Left,
+    ),
+    (
+        Icon::AlignSides,
+        "Align the open windows at both sides",
+        Alignment::Sides,
+    ),
+];
 
 /// The content of the bar.
 struct Model<'a> {
@@ -42,7 +63,7 @@ struct Model<'a> {
 enum Request {
     ShowAll,
     Show(Panel),
-    Align,
+    Align(Alignment),
     HideAll,
     Scale(ScaleStep),
     Theme(Theme),
@@ -114,7 +135,7 @@ fn carry_out(
             panels.set_open(panel, true);
             panel.point_out(context);
         }
-        Request::Align => panels.align(),
+        Request::Align(alignment) => panels.align(alignment),
         Request::HideAll => panels.set_all_open(false),
         Request::Scale(step) => scale.change(step, context.zoom_factor()),
         Request::Theme(wished) => *theme = wished,
@@ -132,6 +153,7 @@ fn show(context: &Context, model: &Model) -> Option<Request> {
         let frame = egui::Frame::side_top_panel(ui.style());
         let shown = frame.show(ui, |ui| {
             ui.set_width(width - frame.total_margin().sum().x);
+            ui.spacing_mut().item_spacing.x = GAP;
             ui.horizontal_wrapped(|ui| buttons(ui, model)).inner
         });
         shown.inner
@@ -153,8 +175,9 @@ fn buttons(ui: &mut Ui, model: &Model) -> Option<Request> {
     for panel in Panel::ALL {
         when(panel_button(ui, panel, model), Request::Show(panel));
     }
-    let align = "Align the open windows at the left";
-    when(picture(ui, Icon::AlignLeft, align), Request::Align);
+    for (icon, name, alignment) in ALIGNMENTS {
+        when(picture(ui, icon, name), Request::Align(alignment));
+    }
     when(
         picture(ui, Icon::Cross, "Hide all windows"),
         Request::HideAll,
@@ -176,16 +199,20 @@ fn buttons(ui: &mut Ui, model: &Model) -> Option<Request> {
     }
     button("?", Action::ShowHelp, "Help", Request::Help);
     let other = model.theme.other();
-    let button = ui.button(other.label());
-    let button = button.on_hover_text(format!(
+    let colours = format!(
         "Show the windows in {} colours",
         other.label().to_lowercase()
-    ));
-    when(button.clicked(), Request::Theme(other));
+    );
+    let icon = match other {
+        Theme::Light => Icon::Sun,
+        Theme::Dark => Icon::Moon,
+    };
+    let theme = named_picture(ui, icon, other.label(), &colours);
+    when(theme, Request::Theme(other));
     if model.has_display {
-        let display = ui.button("Display");
-        let display = display.on_hover_text("Resolution, full screen, refresh rate, anti-aliasing");
-        when(display.clicked(), Request::Display);
+        let tooltip = "Display: resolution, full screen, refresh rate, anti-aliasing";
+        let display = named_picture(ui, Icon::Screen, "Display", tooltip);
+        when(display, Request::Display);
     }
     request
 }
@@ -198,12 +225,20 @@ fn panel_button(ui: &mut Ui, panel: Panel, model: &Model) -> bool {
     }
     let is_open = model.panels.is_open(panel);
     let button = ui.add(Button::new(text).selected(is_open));
-    button.on_hover_text(panel.tooltip()).clicked()
+    let tooltip = match model.keymap.hint(panel.action()) {
+        hint if hint.is_empty() => panel.tooltip().to_owned(),
+        hint => format!("{} ({hint})", panel.tooltip()),
+    };
+    button.on_hover_text(tooltip).clicked()
 }
 
 fn picture(ui: &mut Ui, icon: Icon, name: &str) -> bool {
+    named_picture(ui, icon, name, name)
+}
+
+fn named_picture(ui: &mut Ui, icon: Icon, name: &str, tooltip: &str) -> bool {
     let (_, rect) = ui.allocate_space(ICON_SIZE);
-    icon_button(ui, rect, icon, name, name).clicked()
+    icon_button(ui, rect, icon, name, tooltip).clicked()
 }
 
 #[cfg(test)]
@@ -256,7 +291,7 @@ mod tests {
             let mut harness = harness();
             harness.get_by_label(panel.label()).hover();
             harness.run_steps(8);
-            let reported = harness.query_by_label(panel.tooltip());
+            let reported = harness.query_by_label_contains(panel.tooltip());
             assert!(reported.is_some(), "{panel:?}");
         }
     }
@@ -265,7 +300,14 @@ mod tests {
     fn all_are_shown_aligned_and_hidden() {
         for (name, expected) in [
             ("Show all windows", Request::ShowAll),
-            ("Align the open windows at the left", Request::Align),
+            (
+                "Align the open windows at the left",
+                Request::Align(Alignment::Left),
+            ),
+            (
+                "Align the open windows at both sides",
+                Request::Align(Alignment::Sides),
+            ),
             ("Hide all windows", Request::HideAll),
         ] {
             assert_eq!(clicked(name), Some(expected));
@@ -299,6 +341,17 @@ mod tests {
     }
 
     #[test]
+    fn all_buttons_are_in_a_row_of_1024_points() {
+        let mut harness = harness();
+        harness.state_mut().unseen_faults = 99;
+        harness.run();
+        let bar = harness.ctx.memory(|memory| memory.area_rect(id())).unwrap();
+        assert!(bar.height() < 2.0 * ICON_SIZE.y, "{bar}");
+        let last = harness.get_by_label("Display").rect();
+        assert!(bar.contains_rect(last), "{last} in {bar}");
+    }
+
+    #[test]
     fn faults_that_were_not_seen_are_counted() {
         let mut harness = harness();
         harness.state_mut().unseen_faults = 3;
@@ -329,7 +382,7 @@ mod tests {
         let all = [true; Panel::ALL.len()];
         let none = [false; Panel::ALL.len()];
         assert_eq!(carried_out(Request::ShowAll), all);
-        assert_eq!(carried_out(Request::Align), all);
+        assert_eq!(carried_out(Request::Align(Alignment::Left)), all);
         assert_eq!(carried_out(Request::HideAll), none);
         for (i, panel) in Panel::ALL.into_iter().enumerate() {
             let open = carried_out(Request::Show(panel));

@@ -1,9 +1,11 @@
 //! The program's own list of files, for desktops that have no dialog for it.
 
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-};
+mod folder;
+mod purpose;
+
+pub use purpose::Purpose;
+
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 use bevy_egui::{
@@ -11,69 +13,12 @@ use bevy_egui::{
     egui::{Id, Key, Label, Modal, RichText, ScrollArea, TextEdit, Ui},
 };
 
-use crate::{
-    files::{FileRequest, short_name},
-    widgets::button::button,
-};
+use self::folder::{EntryKind, FileEntry, FolderContent};
+use crate::{files::FileRequest, widgets::button::button};
 
 /// Size of the list in points.
 const WIDTH: f32 = 420.0;
 const HEIGHT: f32 = 300.0;
-
-/// The purpose for which a file is looked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// Opening a task file or a recording.
-    Open,
-    /// Saving a task file.
-    Save,
-    /// Saving a video of a recording.
-    Video,
-    /// Saving a picture of the view, of so many columns and rows.
-    Picture([u32; 2]),
-    /// Saving a table of curves.
-    Table,
-    /// Saving a picture of a plot.
-    Plot,
-}
-
-impl Purpose {
-    /// The name that is proposed.
-    pub const fn file_name(self) -> &'static str {
-        match self {
-            Self::Open => "",
-            Self::Save => "task.xml",
-            Self::Video => "demo.mp4",
-            Self::Picture(_) => "view.png",
-            Self::Table => "curves.csv",
-            Self::Plot => "plot.png",
-        }
-    }
-
-    /// The request about the file that the user has chosen.
-    pub fn request(self, path: PathBuf) -> FileRequest {
-        match self {
-            Self::Open => FileRequest::Open(path),
-            Self::Save => FileRequest::Save(path),
-            Self::Video => FileRequest::SaveVideo(path),
-            Self::Picture(size) => FileRequest::SavePicture(path, size),
-            Self::Table => FileRequest::SaveTable(path),
-            Self::Plot => FileRequest::SavePlot(path),
-        }
-    }
-
-    /// The title of a dialog.
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Open => "Open a task file or a recording",
-            Self::Save => "Save as a task file",
-            Self::Video => "Save a video (.mp4, .gif) or a contact sheet (.png)",
-            Self::Picture(_) => "Save a picture of the view",
-            Self::Table => "Save the curves as a table (.csv)",
-            Self::Plot => "Save a picture of the plot (.png)",
-        }
-    }
-}
 
 /// A window that shows a folder, in which the user chooses a file.
 #[derive(Resource, Debug, Default)]
@@ -92,29 +37,6 @@ struct FileSearch {
     replaces: Option<PathBuf>,
     /// True until it is shown first, and takes the keyboard.
     is_new: bool,
-}
-
-/// The entries of a folder that can be chosen.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct FolderContent {
-    path: PathBuf,
-    entries: Vec<FileEntry>,
-    /// The reason why there are no entries.
-    problem: Option<String>,
-}
-
-/// Something in a folder.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct FileEntry {
-    kind: EntryKind,
-    name: String,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum EntryKind {
-    Folder,
-    Recording,
-    Task,
 }
 
 /// A wish of the user.
@@ -302,53 +224,10 @@ impl FileSearch {
     }
 }
 
-impl FolderContent {
-    fn read(path: &Path) -> Self {
-        let path = std::path::absolute(path).unwrap_or(path.to_owned());
-        match list(&path) {
-            Ok(entries) => Self {
-                path,
-                entries,
-                problem: None,
-            },
-            Err(error) => Self {
-                problem: Some(format!("{} cannot be read: {error}", short_name(&path))),
-                path,
-                entries: Vec::new(),
-            },
-        }
-    }
-}
-
-/// Folders, then recordings, then task files, each by name; without hidden ones.
-fn list(folder: &Path) -> io::Result<Vec<FileEntry>> {
-    let found = fs::read_dir(folder)?;
-    let mut entries: Vec<_> = found
-        .flatten()
-        .filter_map(|found| entry(&found.path()))
-        .collect();
-    entries.sort();
-    Ok(entries)
-}
-
-fn entry(path: &Path) -> Option<FileEntry> {
-    let name = short_name(path);
-    let is_task = path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
-    let kind = if path.is_dir() {
-        match path.join("session.jsonl").is_file() {
-            true => EntryKind::Recording,
-            false => EntryKind::Folder,
-        }
-    } else {
-        is_task.then_some(EntryKind::Task)?
-    };
-    (!name.starts_with('.')).then_some(FileEntry { kind, name })
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use egui_kittest::{Harness, kittest::Queryable as _};
 
@@ -405,8 +284,8 @@ mod tests {
     #[test]
     fn a_folder_lists_folders_recordings_and_task_files() {
         let folder = folder("lists");
-        let names: Vec<_> = list(&folder)
-            .unwrap()
+        let names: Vec<_> = FolderContent::read(&folder)
+            .entries
             .into_iter()
             .map(|entry| entry.name)
             .collect();

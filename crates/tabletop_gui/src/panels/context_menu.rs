@@ -12,7 +12,7 @@ use crate::{
     input::{
         navigate::{self, Gesture},
         operable::{Choice, Operable},
-        pointer::{MouseSystems, Pointer},
+        pointer::{Buttons, MouseSystems, Pointer},
     },
     widgets::button::button,
 };
@@ -83,7 +83,7 @@ fn close_when_running(mut menu: ResMut<ContextMenu>, paused: Res<Paused>) {
 
 /// The right button comes up where it went down: the object there has its menu.
 fn open(
-    buttons: Res<ButtonInput<MouseButton>>,
+    buttons: Res<Buttons>,
     gesture: Res<Gesture>,
     pointer: Res<Pointer>,
     operable: Operable,

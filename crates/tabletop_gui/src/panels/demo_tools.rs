@@ -7,7 +7,7 @@ mod tests;
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{self, Color32, Ui},
+    egui::{Color32, Ui},
 };
 use tabletop_core::{
     Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand, ObjectSpec,
@@ -38,7 +38,8 @@ const EMPTY: &str = "<empty>";
 const NOTHING_HELD: &str = "the selected hand holds nothing";
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(Update, open_at_first_grasp)
+    app.add_plugins(take::plugin)
+        .add_systems(Update, open_at_first_grasp)
         .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
@@ -211,25 +212,22 @@ const fn tooltip_of_hand(hand: Hand) -> &'static str {
 
 fn held_object(ui: &mut Ui, model: &Model) -> Option<Request> {
     let is_holding = model.held.is_some();
-    // From the right, so that a long id leaves room for the buttons.
-    let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
-    let row = |ui: &mut Ui| {
+    // A line for itself, so that a long id is seen.
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Current Object:");
+        ui.strong(model.held.unwrap_or(EMPTY));
+    });
+    let buttons = |ui: &mut Ui| {
+        let release = button(ui, is_holding, "Release", "Let go of the object").clicked();
         let destroy = "Remove the object from the world";
         let destroy = button(ui, is_holding, "Destroy", destroy).clicked();
-        let release = button(ui, is_holding, "Release", "Let go of the object").clicked();
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.label("Current Object:");
-            let id = egui::RichText::new(model.held.unwrap_or(EMPTY)).strong();
-            ui.add(egui::Label::new(id).truncate());
-        });
         match (release, destroy) {
             (true, _) => Some(Request::Release),
             (false, true) => Some(Request::Destroy),
             (false, false) => None,
         }
     };
-    let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
-    ui.allocate_ui_with_layout(size, from_the_right, row).inner
+    ui.horizontal(buttons).inner
 }
 
 /// The buttons that turn the plane while they are held down.
@@ -265,19 +263,14 @@ fn recording(ui: &mut Ui, model: &Model) -> Option<Request> {
     let is_recording = model.is_recording;
     let can_undo = is_recording && model.history.undoable > 0;
     let can_redo = is_recording && model.history.redoable > 0;
-    let undo = model.keymap.tooltip(Action::Undo);
+    let [record, undo] = [Action::Record, Action::Undo].map(|it| model.keymap.tooltip(it));
     let redo = model.keymap.tooltip(Action::Redo);
     let buttons = |ui: &mut Ui| {
         ui.label("Recording:");
         let mut asked = None;
         for (request, is_enabled, text, tooltip) in [
-            (
-                Request::Start,
-                !is_recording,
-                "Start",
-                "Begin to record the demonstration",
-            ),
-            (Request::Finish, is_recording, "Finish", "End the recording"),
+            (Request::Start, !is_recording, "Start", &record),
+            (Request::Finish, is_recording, "Finish", &record),
             (Request::Undo, can_undo, "Undo", &undo),
             (Request::Redo, can_redo, "Redo", &redo),
         ] {

@@ -1,6 +1,7 @@
 //! The Objects window (report section 6, figure 13): task files, presets, and the objects on the table.
 
 mod inspector;
+mod keys;
 mod list;
 mod new_objects;
 mod present_object;
@@ -14,13 +15,13 @@ use bevy_egui::{
         ComboBox, Direction, Id, InnerResponse, Layout, Response, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{
-    Actor, CommandWriter, Held, ObjectEdit, ObjectIndex, ObjectSpec, Preset, SceneCommand,
-};
-use tabletop_geometry::Pose;
+use tabletop_core::{Actor, CommandWriter, ObjectEdit, Preset, SceneCommand};
 use tabletop_user::{Action, Keymap};
 
-use self::{list::ObjectList, present_object::PresentObject};
+use self::{
+    list::ObjectList,
+    present_object::{OnTable, PresentObject},
+};
 use crate::{
     files::{FileRequest, Files, TaskFile, short_name},
     panels::{Panel, Panels},
@@ -58,7 +59,7 @@ struct Model<'a> {
 }
 
 /// The selection in the lists.
-#[derive(Default)]
+#[derive(Resource, Default)]
 struct Selection {
     task: Option<PathBuf>,
     entry: usize,
@@ -76,20 +77,20 @@ enum Request {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(EguiPrimaryContextPass, show_panel);
+    app.add_plugins(keys::plugin)
+        .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
 fn show_panel(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
-    mut selection: Local<Selection>,
+    mut selection: ResMut<Selection>,
     mut seeds: ResMut<PresetSeeds>,
     mut commands: CommandWriter,
     mut file_requests: MessageWriter<FileRequest>,
     files: Res<Files>,
     keymap: Res<Keymap>,
-    index: Res<ObjectIndex>,
-    on_table: Query<(&ObjectSpec, &Transform, Option<&Held>)>,
+    on_table: OnTable,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
@@ -97,17 +98,7 @@ fn show_panel(
     if !panels.is_open(Panel::Objects) {
         return;
     }
-    let objects: Vec<_> = index
-        .ids()
-        .filter_map(|id| on_table.get(index.get(id)?).ok())
-        .map(|(spec, place, held)| PresentObject {
-            spec: ObjectSpec {
-                pose: Pose::from(place),
-                ..spec.clone()
-            },
-            holder: held.map(|held| held.by.to_string()),
-        })
-        .collect();
+    let objects = on_table.all();
     let model = Model {
         objects: &objects,
         tasks: &files.tasks,
@@ -280,8 +271,8 @@ mod tests {
 
     use super::*;
     use egui_kittest::{Harness, kittest::Queryable as _};
-    use tabletop_core::Shape;
-    use tabletop_geometry::Rgb;
+    use tabletop_core::{ObjectSpec, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     struct Stage {
         files: Files,

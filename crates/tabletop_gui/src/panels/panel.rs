@@ -30,6 +30,15 @@ pub enum Panel {
     Messages,
 }
 
+/// The edge of the desk at which a panel stands, unless the user has moved it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Edge {
+    Left,
+    Right,
+    /// Along all of the lower edge.
+    Bottom,
+}
+
 impl Panel {
     /// The panels in the order of their buttons, and from the top downwards when they are aligned.
     pub const ALL: [Self; 10] = [
@@ -97,7 +106,18 @@ impl Panel {
         }
     }
 
-    /// Width of its contents in points.
+    /// Where it stands.
+    pub(crate) const fn edge(self) -> Edge {
+        match self {
+            Self::Status | Self::Camera | Self::Robot | Self::DemonstrationTools => Edge::Left,
+            Self::Pose | Self::Objects | Self::Recordings | Self::Plots | Self::Messages => {
+                Edge::Right
+            }
+            Self::Timeline => Edge::Bottom,
+        }
+    }
+
+    /// Width of its contents in points, unless it is docked.
     pub const fn width(self) -> f32 {
         match self {
             Self::Status

@@ -8,7 +8,9 @@ use bevy_egui::{
     egui::{Color32, ComboBox, Rect, Ui, Vec2b, WidgetInfo, WidgetType},
 };
 use egui_plot::{Legend, Line, Plot, PlotPoints, VLine};
-use tabletop_core::{Playback, PlaybackOrder, SimTick, TICKS_PER_SECOND, Timeline, TimelineStage};
+use tabletop_core::{
+    Idle, Playback, PlaybackOrder, SimTick, TICKS_PER_SECOND, Timeline, TimelineStage,
+};
 use tabletop_user::{Curves, Quantity, RecordedCurves, ShownCurves};
 
 use self::live::LiveCurves;
@@ -30,6 +32,7 @@ const PLAYHEAD: Color32 = Color32::WHITE;
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<PlotView>()
         .init_resource::<LiveCurves>()
+        .init_resource::<Idle>()
         .init_resource::<RecordedCurves>()
         .init_resource::<ShownCurves>()
         .add_message::<FileRequest>()

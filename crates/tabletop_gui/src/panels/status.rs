@@ -1,6 +1,9 @@
 //! The Status window (report figure 4): speeds of the picture and the simulation, the script, the recording.
 
-use std::{path::PathBuf, time::Duration};
+mod speed;
+mod words;
+
+use std::path::PathBuf;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
@@ -8,20 +11,19 @@ use bevy_egui::{
     egui::{Label, RichText, Ui},
 };
 use tabletop_core::{
-    Agent, History, Paused, Recording, RecordingFact, Replaying, SimFact, SimTick, TICKS_PER_SECOND,
+    Agent, History, Idle, Paused, Recording, RecordingFact, Replaying, SimFact, SimTick,
+    TICKS_PER_SECOND,
 };
 
+use self::{
+    speed::{Clock, Means, Speed, measure, tell_time},
+    words::{frames, matlab, recording, simulated, undo, words_for},
+};
 use crate::{
     PictureStatus,
     panels::{Panel, Panels},
     widgets::style::ThemeColors,
 };
-
-/// The time over which speeds are averaged.
-const SPAN: Duration = Duration::from_secs(2);
-
-/// Time between updates of the simulated time while nothing else changes in the picture.
-const STILL_SPAN: Duration = Duration::from_secs(1);
 
 /// Height of a row, and width of the names of the values, in points.
 const ROW_HEIGHT: f32 = 16.0;
@@ -42,83 +44,10 @@ pub struct Renderer {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Speed>()
         .init_resource::<Clock>()
+        .init_resource::<Idle>()
         .init_resource::<Take>()
         .add_systems(Update, (measure, tell_time, follow_recording))
         .add_systems(EguiPrimaryContextPass, show_panel);
-}
-
-/// Pictures, ticks and calls of the script in the last seconds.
-#[derive(Resource, Default)]
-struct Speed {
-    since: Duration,
-    drawn: u64,
-    ticks: SimTick,
-    calls: u32,
-    calling: Duration,
-    mean: Means,
-}
-
-/// The shown means.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Means {
-    /// Pictures a second.
-    fps: f32,
-    /// Simulated seconds a second.
-    pace: f32,
-    /// The time that a call of the script took.
-    call: Option<Duration>,
-}
-
-/// The simulated time as the window shows it.
-#[derive(Resource, Default)]
-struct Clock {
-    tick: SimTick,
-    read_at: Duration,
-}
-
-fn tell_time(
-    time: Res<Time<Real>>,
-    tick: Res<SimTick>,
-    picture: Res<PictureStatus>,
-    paused: Res<Paused>,
-    mut clock: ResMut<Clock>,
-) {
-    let now = time.elapsed();
-    if !picture.is_still || paused.0 || now >= clock.read_at + STILL_SPAN {
-        *clock = Clock {
-            tick: *tick,
-            read_at: now,
-        };
-    }
-}
-
-fn measure(
-    time: Res<Time<Real>>,
-    tick: Res<SimTick>,
-    agent: Res<Agent>,
-    picture: Res<PictureStatus>,
-    mut speed: ResMut<Speed>,
-) {
-    speed.since += time.delta();
-    if let Agent::Online { took } = *agent {
-        speed.calls += 1;
-        speed.calling += took;
-    }
-    if speed.since < SPAN {
-        return;
-    }
-    let seconds = speed.since.as_secs_f32();
-    let ticks = tick.0.saturating_sub(speed.ticks.0);
-    *speed = Speed {
-        mean: Means {
-            fps: picture.drawn.saturating_sub(speed.drawn) as f32 / seconds,
-            pace: ticks as f32 / TICKS_PER_SECOND as f32 / seconds,
-            call: speed.calling.checked_div(speed.calls),
-        },
-        drawn: picture.drawn,
-        ticks: *tick,
-        ..default()
-    };
 }
 
 /// The folder and the beginning of the present recording.
@@ -145,6 +74,8 @@ struct Model {
     mean: Means,
     /// True if nothing moves in the picture.
     is_still: bool,
+    /// True if the world has been resting since the simulated time.
+    is_resting: bool,
     /// The simulated time.
     tick: SimTick,
     is_paused: bool,
@@ -191,6 +122,7 @@ impl Sources<'_> {
             mean: self.speed.mean,
             is_still: self.picture.is_still,
             tick: self.clock.tick,
+            is_resting: self.clock.is_resting,
             is_paused: self.paused.0,
             agent: self.agent.clone(),
             film: self.film(),
@@ -249,74 +181,6 @@ fn row(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
     });
 }
 
-/// Pictures a second. Of a still picture their number says nothing.
-fn frames(model: &Model) -> String {
-    match model.is_still {
-        true => "at rest".into(),
-        false => format!("{:03.0}", model.mean.fps),
-    }
-}
-
-fn simulated(model: &Model) -> String {
-    let seconds = model.tick.0 as f64 / f64::from(TICKS_PER_SECOND);
-    match model.is_paused {
-        true => format!("{seconds:.1} s, paused"),
-        false => format!("{seconds:.1} s, {:.2} × real time", model.mean.pace),
-    }
-}
-
-/// The state of the script, in words.
-fn matlab(agent: &Agent, call: Option<Duration>) -> String {
-    match (agent, call) {
-        (Agent::Off, _) => "offline".into(),
-        (Agent::Starting, _) => "starting".into(),
-        (Agent::Online { .. }, None) => "online".into(),
-        (Agent::Online { .. }, Some(call)) => {
-            format!("online, {:.1} ms a call", call.as_secs_f64() * 1e3)
-        }
-        (Agent::Waiting { since }, _) => {
-            format!("waiting for script {:.1} s", since.as_secs_f64())
-        }
-        (Agent::Failed, _) => "stopped by an error".into(),
-    }
-}
-
-fn recording(film: &FilmState) -> String {
-    match film {
-        FilmState::None => "not recording".into(),
-        FilmState::Recorded {
-            folder,
-            segment,
-            frame,
-        } => format!("segment {segment}, frame {frame} in {}", folder.display()),
-        FilmState::Replayed => "a recording is played".into(),
-    }
-}
-
-/// The number of segments that can be undone, and the memory that they take.
-fn undo(history: &History) -> String {
-    const MEGABYTE: usize = 1024 * 1024;
-    let [used, most] = [history.bytes, history.most_bytes].map(|bytes| bytes.div_ceil(MEGABYTE));
-    let segments = match history.undoable {
-        1 => "1 segment".to_owned(),
-        count => format!("{count} segments"),
-    };
-    let memory = format!("{segments}, {used} of {most} MB");
-    match history.dropped {
-        0 => memory,
-        dropped => format!("{memory}; the first {dropped} are kept no longer"),
-    }
-}
-
-fn words_for(renderer: &Renderer, colors: &ThemeColors) -> RichText {
-    match renderer.is_software {
-        true => {
-            RichText::new(format!("software renderer ({})", renderer.name)).color(colors.warning)
-        }
-        false => renderer.name.as_str().into(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use bevy::{ecs::system::RunSystemOnce as _, time::TimeUpdateStrategy};
@@ -325,95 +189,6 @@ mod tests {
     use tabletop_user::UserPlugin;
 
     use super::*;
-
-    const fn ms(ms: u64) -> Duration {
-        Duration::from_millis(ms)
-    }
-
-    #[test]
-    fn the_script_has_words_for_all_that_it_does() {
-        for (agent, call, words) in [
-            (Agent::Off, None, "offline"),
-            (Agent::Online { took: ms(9) }, None, "online"),
-            (
-                Agent::Online { took: ms(9) },
-                Some(ms(1)),
-                "online, 1.0 ms a call",
-            ),
-            (
-                Agent::Waiting { since: ms(3210) },
-                None,
-                "waiting for script 3.2 s",
-            ),
-        ] {
-            assert_eq!(matlab(&agent, call), words);
-        }
-    }
-
-    #[test]
-    fn the_memory_of_undo_and_dropped_segments_are_reported() {
-        let mut history = History {
-            undoable: 12,
-            bytes: 3_500_000,
-            most_bytes: 512 * 1024 * 1024,
-            ..default()
-        };
-        assert_eq!(undo(&history), "12 segments, 4 of 512 MB");
-        history.dropped = 5;
-        let reported = "12 segments, 4 of 512 MB; the first 5 are kept no longer";
-        assert_eq!(undo(&history), reported);
-    }
-
-    fn app() -> App {
-        let mut app = App::new();
-        app.add_plugins(MinimalPlugins)
-            .init_resource::<SimTick>()
-            .init_resource::<Paused>()
-            .init_resource::<PictureStatus>()
-            .init_resource::<Speed>()
-            .init_resource::<Clock>()
-            .init_resource::<Agent>()
-            .add_systems(Update, (measure, tell_time))
-            .insert_resource(TimeUpdateStrategy::ManualDuration(ms(100)));
-        app
-    }
-
-    /// A frame with three ticks, drawn or not.
-    fn frame(app: &mut App, is_drawn: bool) {
-        app.world_mut().resource_mut::<SimTick>().0 += 3;
-        app.update();
-        app.world_mut().resource_mut::<PictureStatus>().drawn += u64::from(is_drawn);
-    }
-
-    #[test]
-    fn speeds_are_means_of_two_seconds() {
-        let mut app = app();
-        for number in 0..25 {
-            let took = ms(if number % 2 == 0 { 1 } else { 3 });
-            app.insert_resource(Agent::Online { took });
-            frame(&mut app, number % 2 == 0);
-        }
-        let mean = app.world().resource::<Speed>().mean;
-        assert!((mean.fps - 5.0).abs() < 0.6, "{mean:?}");
-        assert!((mean.pace - 0.5).abs() < 0.1, "{mean:?}");
-        let call = mean.call.unwrap();
-        assert!(ms(1) < call && call < ms(3), "{mean:?}");
-    }
-
-    #[test]
-    fn a_still_picture_tells_the_time_once_a_second() {
-        let mut app = app();
-        for (is_still, different) in [(false, 30), (true, 3)] {
-            app.world_mut().resource_mut::<PictureStatus>().is_still = is_still;
-            let mut reported = std::collections::BTreeSet::new();
-            for _ in 0..30 {
-                frame(&mut app, true);
-                reported.insert(app.world().resource::<Clock>().tick.0);
-            }
-            let distinct = reported.len();
-            assert!(distinct.abs_diff(different) <= 1, "{distinct}");
-        }
-    }
 
     #[test]
     fn everything_is_shown_in_words() {
@@ -466,7 +241,9 @@ mod tests {
     fn a_recording_is_followed_frame_by_frame() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
-            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(
+                std::time::Duration::ZERO,
+            ))
             .init_resource::<Speed>()
             .init_resource::<Clock>()
             .init_resource::<Take>()

@@ -32,6 +32,12 @@ use crate::panels::{Panel, Panels};
 /// Advice where there is no recording.
 const ABSENT: &str = "There is no recording. Start one in Demonstration Tools, or open one: drop its folder onto the window.";
 
+/// From this width on, in points, the lesson stands beside the recording, else below it.
+const WIDE: f32 = 900.0;
+
+/// The width of the lesson beside the recording, in points.
+const LESSON: f32 = 330.0;
+
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<View>()
         .add_plugins((edits::plugin, orders::plugin))
@@ -41,13 +47,45 @@ pub(crate) fn plugin(app: &mut App) {
 
 /// Shows the panel's contents, and returns the user's requests.
 fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
+    if lesson::is_empty(model) {
+        return show_recording(ui, model, view);
+    }
+    let width = ui.available_width();
+    if width < WIDE {
+        let mut requests = show_recording(ui, model, view);
+        ui.separator();
+        requests.extend(lesson::show(ui, model));
+        return requests;
+    }
+    let beside = |ui: &mut Ui| {
+        let recording = |ui: &mut Ui| {
+            ui.set_width(width - LESSON - 2.0 * ui.spacing().item_spacing.x);
+            show_recording(ui, model, view)
+        };
+        let mut requests = ui.vertical(recording).inner;
+        ui.separator();
+        requests.extend(ui.vertical(|ui| lesson::show(ui, model)).inner);
+        requests
+    };
+    ui.horizontal_top(beside).inner
+}
+
+/// Shows the buttons, and the recording along its time.
+fn show_recording(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
     view.pictures.begin_frame(&model.timeline.folder);
     view.selection.begin_frame(model.timeline);
-    let mut requests = transport::show(ui, model);
-    if model.timeline.stage == TimelineStage::Absent {
+    let is_absent = model.timeline.stage == TimelineStage::Absent;
+    let mut requests = Vec::new();
+    ui.horizontal_wrapped(|ui| {
+        requests = transport::show(ui, model);
+        if !is_absent {
+            ui.separator();
+            view.zoom.buttons(ui, model);
+        }
+    });
+    if is_absent {
         view.looked_at = None;
         ui.label(ABSENT);
-        requests.extend(lesson::show(ui, model));
         return requests;
     }
     if view.zoomed != model.timeline.folder {
@@ -57,7 +95,6 @@ fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
     if !model.is_paused || model.playback.goal.is_some() {
         view.zoom.follow(model.timeline, model.playhead());
     }
-    ui.horizontal(|ui| view.zoom.buttons(ui, model));
     let (rect, _) = ui.allocate_exact_size(
         egui::vec2(ui.available_width(), track::HEIGHT),
         egui::Sense::hover(),
@@ -87,7 +124,6 @@ fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
     requests.extend(show_segment(ui, model, view));
     let edits = edits::show(ui, model, &view.selection);
     requests.extend(edits.into_iter().map(Request::Edit));
-    requests.extend(lesson::show(ui, model));
     requests
 }
 

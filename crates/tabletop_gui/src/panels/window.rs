@@ -12,6 +12,7 @@ use crate::{
         panel::Panel,
     },
     widgets::{
+        focus,
         icon::{Icon, icon_button},
         style::{ACCENT, CORNER, MARGIN, ThemeColors},
     },
@@ -19,6 +20,9 @@ use crate::{
 
 /// Height of the title bar in points.
 const TITLE_HEIGHT: f32 = 26.0;
+
+/// The most height of a docked panel, as a share of the desk's.
+const DOCK: f32 = 0.4;
 
 /// Height of a panel that has not been seen yet.
 const UNKNOWN_HEIGHT: f32 = 160.0;
@@ -48,19 +52,23 @@ impl Panel {
         note_order(context, panels);
         let place = panels.place(self, desk, |panel| panel.reserved(context));
         let place = kept_on(desk, place, self.size(context));
-        let highest = desk.height() - TITLE_HEIGHT - 2.0 * f32::from(MARGIN);
+        let (width, share) = match panels.is_docked(self) {
+            true => (docked_width(context, desk), DOCK),
+            false => (self.width(), 1.0),
+        };
+        let highest = share * desk.height() - TITLE_HEIGHT - 2.0 * f32::from(MARGIN);
         let area = Area::new(self.id()).fixed_pos(place).constrain(false);
         let window = area.show(context, |ui| {
             let spacing = ui.spacing().item_spacing;
             ui.spacing_mut().item_spacing = Vec2::ZERO;
             // Else the panel could not grow.
-            ui.set_max_size(vec2(self.outer_width(), desk.height()));
+            ui.set_max_size(vec2(outer_width(width), desk.height()));
             let frame = Frame::window(ui.style()).inner_margin(0);
             let shown = frame.show(ui, |ui| {
-                let handled = self.title_bar(ui, place, desk);
+                let handled = self.title_bar(ui, place, desk, width);
                 let inside = Frame::new().inner_margin(Margin::same(MARGIN));
                 let shown = inside.show(ui, |ui| {
-                    ui.set_width(self.width());
+                    ui.set_width(width);
                     ui.spacing_mut().item_spacing = spacing;
                     // Without the least height, contents that have grown would be scrolled in their former space.
                     let scroll = ScrollArea::vertical()
@@ -91,6 +99,15 @@ impl Panel {
         context.data_mut(|data| data.insert_temp(self.flash_id(), until));
     }
 
+    /// Lets the panel have the keyboard: its first button gets the focus.
+    pub(crate) fn take_focus(self, context: &Context) {
+        focus::call(context, self.focus_id());
+    }
+
+    fn focus_id(self) -> Id {
+        self.id().with("focus")
+    }
+
     fn id(self) -> Id {
         Id::new(self.title())
     }
@@ -99,13 +116,10 @@ impl Panel {
         self.id().with("flash")
     }
 
-    fn outer_width(self) -> f32 {
-        self.width() + 2.0 * f32::from(MARGIN)
-    }
-
     fn size(self, context: &Context) -> Vec2 {
         let seen = context.memory(|memory| memory.area_rect(self.id()));
-        seen.map_or(vec2(self.outer_width(), UNKNOWN_HEIGHT), |rect| rect.size())
+        let unseen = vec2(outer_width(self.width()) + border(context), UNKNOWN_HEIGHT);
+        seen.map_or(unseen, |rect| rect.size())
     }
 
     /// The size for which it has its place among the others: its own, until all have settled. So no panel jumps when another grows.
@@ -124,17 +138,12 @@ impl Panel {
         })
     }
 
-    /// Width inside the border.
-    fn inner_width(self, context: &Context) -> f32 {
-        let border = 2.0 * context.global_style().visuals.window_stroke.width;
-        self.outer_width().max(self.size(context).x - border)
-    }
-
-    fn title_bar(self, ui: &mut Ui, place: Pos2, desk: Rect) -> Option<Handled> {
-        let size = vec2(self.outer_width(), TITLE_HEIGHT);
+    fn title_bar(self, ui: &mut Ui, place: Pos2, desk: Rect, width: f32) -> Option<Handled> {
+        let size = vec2(outer_width(width), TITLE_HEIGHT);
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         // As wide as the contents were last, which may need more room than the panel has.
-        let rect = rect.with_max_x(rect.left() + self.inner_width(ui.ctx()));
+        let seen = self.size(ui.ctx()).x - border(ui.ctx());
+        let rect = rect.with_max_x(rect.left() + size.x.max(seen));
         let bar = ui.interact(rect, self.id().with("title bar"), Sense::DRAG);
         bar.widget_info(|| {
             WidgetInfo::labeled(WidgetType::Other, true, format!("Move {}", self.title()))
@@ -159,6 +168,7 @@ impl Panel {
             &format!("Hide {}", self.title()),
             "Hide this window",
         );
+        focus::answer(&hide, self.focus_id());
         if hide.clicked() {
             return Some(Handled::Hidden);
         }
@@ -185,6 +195,21 @@ impl Panel {
             ui.ctx().request_repaint();
         }
     }
+}
+
+/// The width inside the border of a panel with contents of this width.
+fn outer_width(width: f32) -> f32 {
+    width + 2.0 * f32::from(MARGIN)
+}
+
+/// The width of the border at both sides.
+fn border(context: &Context) -> f32 {
+    2.0 * context.global_style().visuals.window_stroke.width
+}
+
+/// The width of the contents of a panel that is as wide as the desk.
+fn docked_width(context: &Context, desk: Rect) -> f32 {
+    desk.width() - 2.0 * f32::from(MARGIN) - border(context)
 }
 
 /// The order of the panels, and when it last changed, in seconds.
@@ -308,6 +333,24 @@ mod tests {
     }
 
     #[test]
+    fn the_timeline_lies_along_the_lower_edge_until_it_is_dragged_away() {
+        let mut harness = harness();
+        harness.state_mut().set_open(Panel::Timeline, true);
+        harness.run();
+        let window = |harness: &Harness<Panels>| harness.get_by_label("Timeline").rect();
+        let docked = window(&harness);
+        assert_eq!((docked.left(), docked.right()), (0.0, SIZE.x));
+        assert_eq!(docked.bottom(), SIZE.y);
+        let grip = top_left(&harness, Panel::Timeline) + vec2(50.0, 10.0);
+        drag(&mut harness, grip, grip - vec2(0.0, 300.0));
+        let dragged = window(&harness);
+        assert!(
+            dragged.width() < SIZE.x && dragged.bottom() < SIZE.y - 200.0,
+            "{dragged}"
+        );
+    }
+
+    #[test]
     fn no_panel_jumps_when_another_grows() {
         let show = |ui: &mut Ui, (panels, lines): &mut (Panels, usize)| {
             for panel in [Panel::Status, Panel::Robot] {
@@ -410,6 +453,18 @@ mod tests {
         harness.run();
         let window = harness.get_by_label("Status").rect();
         assert!(window.max.x <= 500.0 && window.max.y <= 300.0, "{window}");
+    }
+
+    #[test]
+    fn a_panel_with_the_keyboard_is_hidden_by_enter() {
+        let mut harness = harness();
+        harness.state_mut().set_open(Panel::Robot, true);
+        Panel::Robot.take_focus(&harness.ctx);
+        harness.run();
+        harness.key_press(bevy_egui::egui::Key::Enter);
+        harness.run();
+        assert!(!harness.state().is_open(Panel::Robot));
+        assert!(harness.state().is_open(Panel::Status));
     }
 
     #[test]

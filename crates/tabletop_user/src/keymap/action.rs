@@ -85,6 +85,8 @@ pub enum Action {
     RollLeft,
     /// Roll the chosen object to the viewer's right.
     RollRight,
+    /// Remove the chosen object.
+    DeleteObject,
     /// Act with the left hand.
     HandLeft,
     /// Act with the right hand.
@@ -93,6 +95,10 @@ pub enum Action {
     HandBoth,
     /// Act with whichever hand is free.
     HandAny,
+    /// Begin a recording, or end it.
+    Record,
+    /// Write the name of the next takes.
+    NameTake,
     /// Discard the present segment of the recording (report section 4.1), or take back the last edit of the open one.
     Undo,
     /// Bring back the segment or edit that was undone last.
@@ -115,6 +121,10 @@ pub enum Action {
     MakeStack,
     /// Remove every object that nobody holds (report section 6.1).
     ClearTable,
+    /// Keep the chosen object, or the selected ones, for pasting.
+    CopyObjects,
+    /// Put the copied objects on the table.
+    PasteObjects,
     /// Choose and open a task file or a recording.
     OpenFile,
     /// Save the scene on the table as a task file.
@@ -133,6 +143,26 @@ pub enum Action {
     Imitate,
     /// Move a joint of the robot while held down (report section 5.1).
     Move(JointName, Way),
+    /// Go to the window Status.
+    StatusWindow,
+    /// Go to the window Camera Navigation.
+    CameraWindow,
+    /// Go to the window Robot.
+    RobotWindow,
+    /// Go to the window Demonstration Tools.
+    DemoToolsWindow,
+    /// Go to the window Pose and Dragging.
+    PoseWindow,
+    /// Go to the window Objects.
+    ObjectsWindow,
+    /// Go to the window Timeline.
+    TimelineWindow,
+    /// Go to the window Recordings.
+    RecordingsWindow,
+    /// Go to the window Plots.
+    PlotsWindow,
+    /// Go to the window Messages.
+    MessagesWindow,
     /// Show or hide the list of keys.
     ShowHelp,
     /// Enter or leave full screen.

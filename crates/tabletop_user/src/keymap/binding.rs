@@ -55,6 +55,11 @@ impl Modifiers {
         ctrl: true,
         ..Self::NONE
     };
+    /// Alt alone.
+    pub const ALT: Self = Self {
+        alt: true,
+        ..Self::NONE
+    };
     /// Shift alone.
     pub const SHIFT: Self = Self {
         shift: true,

@@ -171,6 +171,8 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::HandRight, Demonstration, "Right hand", "Acts with the right hand from now on", vec![plain(Digit8)]),
         row(Action::HandBoth, Demonstration, "Both hands", "Acts with both hands from now on", vec![shift(Digit7)]),
         row(Action::HandAny, Demonstration, "Any hand", "Acts with whichever hand is free from now on", vec![shift(Digit8)]),
+        row(Action::Record, Demonstration, "Record", "Begins a recording, or ends it", vec![ctrl(KeyR)]),
+        row(Action::NameTake, Demonstration, "Name the takes", "Goes to the name of the next recordings", vec![ctrl(KeyN)]),
         row(Action::Undo, Demonstration, "Undo", "Takes back the present segment of the recording, the last change outside of one, or the last edit of an open one", vec![ctrl(KeyZ)]),
         row(Action::Redo, Demonstration, "Redo", "Brings back the segment, change or edit that was undone last", vec![ctrl_shift(KeyZ), ctrl(KeyY)]),
         row(Action::DeleteSegments, Demonstration, "Delete segments", "Deletes the selected segments of the open recording", vec![plain(Delete)]),
@@ -195,10 +197,13 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::TipNearer, Chosen, "Tip nearer", "Tips the chosen object towards you", vec![shift(ArrowDown)]).continuous().while_choosing(),
         row(Action::RollLeft, Chosen, "Roll left", "Rolls the chosen object to the left", vec![shift(PageUp)]).continuous().while_choosing(),
         row(Action::RollRight, Chosen, "Roll right", "Rolls the chosen object to the right", vec![shift(PageDown)]).continuous().while_choosing(),
+        row(Action::DeleteObject, Chosen, "Delete", "Takes the chosen object from the table", vec![plain(Delete)]).while_choosing(),
 
         row(Action::MakeBlock, Objects, "Big block", "Makes a big block somewhere on the table", vec![plain(KeyB)]),
         row(Action::MakeStack, Objects, "Stack of five", "Makes a stack of five blocks somewhere on the table", vec![plain(KeyN)]),
         row(Action::ClearTable, Objects, "Clear the table", "Removes every object that nobody holds", vec![plain(KeyC)]),
+        row(Action::CopyObjects, Objects, "Copy", "Keeps the chosen object, or those selected in Objects, for pasting", vec![ctrl(KeyC)]),
+        row(Action::PasteObjects, Objects, "Paste", "Puts the copied objects on the table", vec![ctrl(KeyV)]),
         row(Action::OpenFile, Objects, "Open a file", "Opens a task file or a recording", vec![ctrl(KeyO)]),
         row(Action::SaveFile, Objects, "Save as a file", "Saves the table as a task file", vec![ctrl(KeyS)]),
 
@@ -209,6 +214,16 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::RunScript, Robot, "Script on, off", "Starts the script that drives the robot, or stops it", vec![plain(KeyM)]),
         row(Action::Imitate, Robot, "Do what was shown", "Lets the robot imitate the recording, or stops it", vec![ctrl(Enter)]),
 
+        row(Action::StatusWindow, Window, "Status", "Goes to the window Status", vec![alt(Digit1)]),
+        row(Action::CameraWindow, Window, "Camera", "Goes to the window Camera Navigation", vec![alt(Digit2)]),
+        row(Action::RobotWindow, Window, "Robot", "Goes to the window Robot", vec![alt(Digit3)]),
+        row(Action::DemoToolsWindow, Window, "Demo Tools", "Goes to the window Demonstration Tools", vec![alt(Digit4)]),
+        row(Action::PoseWindow, Window, "Pose", "Goes to the window Pose and Dragging", vec![alt(Digit5)]),
+        row(Action::ObjectsWindow, Window, "Objects", "Goes to the window Objects", vec![alt(Digit6)]),
+        row(Action::TimelineWindow, Window, "Timeline", "Goes to the window Timeline", vec![alt(Digit7)]),
+        row(Action::RecordingsWindow, Window, "Recordings", "Goes to the window Recordings", vec![alt(Digit8)]),
+        row(Action::PlotsWindow, Window, "Plots", "Goes to the window Plots", vec![alt(Digit9)]),
+        row(Action::MessagesWindow, Window, "Messages", "Goes to the window Messages", vec![alt(Digit0)]),
         row(Action::ShowHelp, Window, "Help", "Shows or hides the list of keys", vec![plain(F1), shift(Slash)]),
         row(Action::FillScreen, Window, "Full screen", "Fills the screen with the window, or no longer", vec![plain(F11)]),
         row(Action::DrawLarger, Window, "Larger", "Draws everything larger", vec![ctrl(Equal), ctrl(NumpadAdd)]),
@@ -286,6 +301,10 @@ const fn plain(key: KeyCode) -> KeyBinding {
 
 const fn shift(key: KeyCode) -> KeyBinding {
     KeyBinding::new(Modifiers::SHIFT, key)
+}
+
+const fn alt(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::ALT, key)
 }
 
 const fn ctrl(key: KeyCode) -> KeyBinding {

@@ -1,4 +1,5 @@
 use bevy::time::TimeUpdateStrategy;
+use bevy_egui::egui;
 use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
@@ -246,4 +247,26 @@ fn the_next_take_is_named_before_it_begins_and_its_notes_stay_open() {
             .accesskit_node()
             .is_disabled()
     );
+}
+
+#[test]
+fn the_name_of_the_takes_gets_the_keyboard_when_it_is_called() {
+    let mut harness = Stage::default().harness();
+    crate::widgets::focus::call(&harness.ctx, take::name_id());
+    harness.run();
+    harness.event(egui::Event::Text("tower".into()));
+    harness.run();
+    assert_eq!(harness.state().take.name, "tower");
+}
+
+#[test]
+fn a_long_id_is_seen_to_its_end() {
+    let mut stage = Stage::holding();
+    let held = "the third red block from the left, which is the smallest one";
+    stage.held = Some(held);
+    let mut harness = stage.harness();
+    harness.run();
+    let id = harness.get_by_label(held).rect();
+    assert!(id.right() <= Panel::DemonstrationTools.width(), "{id}");
+    assert!(id.height() > 25.0, "{id}");
 }

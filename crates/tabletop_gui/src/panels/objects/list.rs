@@ -36,6 +36,29 @@ pub(super) struct ObjectList {
     offset: [f32; 3],
 }
 
+impl ObjectList {
+    /// Keeps objects for pasting.
+    pub fn copy(&mut self, specs: Vec<ObjectSpec>) {
+        self.copied = specs;
+    }
+
+    /// Keeps the selected objects for pasting.
+    pub fn copy_selected(&mut self, objects: &[PresentObject]) {
+        self.copy(self.selected_of(objects));
+    }
+
+    /// The edits that put the copied objects on the table.
+    pub fn pasted(&self, objects: &[PresentObject]) -> Vec<ObjectEdit> {
+        copies(objects, &self.copied)
+    }
+
+    fn selected_of(&self, objects: &[PresentObject]) -> Vec<ObjectSpec> {
+        let is_selected = |it: &&PresentObject| self.selected.contains(&it.spec.id);
+        let selected = objects.iter().filter(is_selected);
+        selected.map(|it| it.spec.clone()).collect()
+    }
+}
+
 #[cfg(test)]
 impl ObjectList {
     /// Selects objects, and chooses by how much they are to be moved.
@@ -145,23 +168,16 @@ fn tools(ui: &mut Ui, objects: &[PresentObject], list: &mut ObjectList) -> Vec<O
     let are_free = has_some && selected.iter().all(|it| it.holder.is_none());
     let mut edits = Vec::new();
     ui.horizontal(|ui| {
-        let copies = |specs: &[ObjectSpec]| copies(objects, specs);
-        let specs = || {
-            selected
-                .iter()
-                .map(|it| it.spec.clone())
-                .collect::<Vec<_>>()
-        };
         let duplicate = "Puts the same objects again beside them";
         if button(ui, has_some, "Duplicate", duplicate).clicked() {
-            edits = copies(&specs());
+            edits = copies(objects, &list.selected_of(objects));
         }
         if button(ui, has_some, "Copy", "Keeps these objects for Paste").clicked() {
-            list.copied = specs();
+            list.copy_selected(objects);
         }
         let paste = "Puts the copied objects on the table";
         if button(ui, !list.copied.is_empty(), "Paste", paste).clicked() {
-            edits = copies(&list.copied);
+            edits = list.pasted(objects);
         }
         let delete = "Takes these objects from the table; Undo brings them back";
         if button(ui, are_free, "Delete", delete).clicked() {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use bevy::prelude::*;
-use tabletop_core::{ObjectIndex, ObjectSpec, Robot, RobotLayout, SimTick, TICKS_PER_SECOND};
+use tabletop_core::{Idle, ObjectIndex, ObjectSpec, Robot, RobotLayout, SimTick, TICKS_PER_SECOND};
 use tabletop_geometry::{Pose, Twist};
 use tabletop_user::{Curves, Quantity};
 
@@ -34,6 +34,7 @@ pub(super) fn sample(
     mut live: ResMut<LiveCurves>,
     panels: Res<Panels>,
     tick: Res<SimTick>,
+    idle: Res<Idle>,
     index: Res<ObjectIndex>,
     objects: Query<(&ObjectSpec, &Transform, Option<&Twist>)>,
     robot: Option<Res<Robot>>,
@@ -45,7 +46,9 @@ pub(super) fn sample(
         }
         return;
     }
-    if *tick == live.last {
+    // At rest all stays as it was; the next sample says so.
+    let has_samples = live.last != SimTick::default();
+    if *tick == live.last || (has_samples && *idle != Idle(0)) {
         return;
     }
     let LiveCurves { curves, last } = &mut *live;

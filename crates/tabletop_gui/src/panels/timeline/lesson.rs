@@ -13,17 +13,20 @@ use crate::widgets::{button::button, style::ACCENT};
 const STEPS: f32 = 110.0;
 const ROLES: f32 = 170.0;
 
+/// True if there is nothing to be shown of the lesson.
+pub(super) fn is_empty(model: &Model) -> bool {
+    model.task.fault.is_none() && model.task.steps.is_empty()
+}
+
 /// Shows the lesson, and returns the user's requests.
 pub(super) fn show(ui: &mut Ui, model: &Model) -> Vec<Request> {
     let task = model.task;
     if let Some(fault) = &task.fault {
-        ui.separator();
         ui.label(fault);
     }
     if task.steps.is_empty() {
         return Vec::new();
     }
-    ui.separator();
     let mut orders: Vec<_> = acting(ui, model).into_iter().collect();
     steps(ui, model);
     CollapsingHeader::new("What must be the same")

@@ -14,14 +14,11 @@ const REPEAT: u64 = 30;
 
 /// Shows the buttons, and returns their requests.
 pub(super) fn show(ui: &mut Ui, model: &Model) -> Vec<Request> {
-    let mut requests = Vec::new();
-    ui.horizontal_wrapped(|ui| {
-        requests.extend(playing(ui, model));
-        ui.separator();
-        requests.extend(pace(ui, model));
-        ui.separator();
-        requests.extend(recording(ui, model));
-    });
+    let mut requests = playing(ui, model);
+    ui.separator();
+    requests.extend(pace(ui, model));
+    ui.separator();
+    requests.extend(recording(ui, model));
     requests
 }
 
