@@ -29,7 +29,6 @@ struct LastAct(Duration);
 
 fn note_acts(
     mut events: MessageReader<WindowEvent>,
-    #[cfg(feature = "gamepad")] mut pads: MessageReader<bevy::input::gamepad::GamepadEvent>,
     redraw: Res<Redraw>,
     idle: Res<Idle>,
     time: Res<Time<Real>>,
@@ -37,8 +36,6 @@ fn note_acts(
 ) {
     let is_of_user = |event: &&WindowEvent| !matches!(event, WindowEvent::RequestRedraw(_));
     let has_acted = events.read().filter(is_of_user).count() > 0;
-    #[cfg(feature = "gamepad")]
-    let has_acted = pads.read().count() > 0 || has_acted;
     last.0 = match has_acted || *idle == Idle(0) {
         true => time.elapsed(),
         false => last.0.max(redraw.moved_at()),
