@@ -15,8 +15,6 @@ pub(crate) mod mouse;
 pub(crate) mod navigate;
 pub(crate) mod object_keys;
 pub(crate) mod operable;
-#[cfg(all(test, feature = "gamepad"))]
-mod pad_tests;
 pub(crate) mod pick;
 pub(crate) mod plane;
 pub(crate) mod pointer;
