@@ -405,7 +405,7 @@ impl EarlierLog {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{RecordingCommand, RobotCommand};
+    use tabletop_core::{HandFact, RecordingCommand, RobotCommand};
 
     use super::*;
 

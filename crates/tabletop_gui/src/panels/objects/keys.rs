@@ -55,9 +55,11 @@ mod tests {
         let commands = test.hold_still();
         test.keys().release_all();
         test.hold_still();
-        let edits = |command| match command {
-            SimCommand::Scene(SceneCommand::Edit(edits)) => edits,
-            other => panic!("{other:?}"),
+        let edits = |command| {
+            let SimCommand::Scene(SceneCommand::Edit(edits)) = command else {
+                panic!("{command:?}");
+            };
+            edits
         };
         commands.into_iter().flat_map(edits).collect()
     }
