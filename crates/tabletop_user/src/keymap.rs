@@ -9,7 +9,7 @@ mod table;
 pub use action::{Action, Way};
 pub use binding::{BindingError, KeyBinding, Modifiers};
 pub use letters::KeyLetters;
-pub use pad::{PAD_CONTROLS, PadControl, Pads, StickWay};
+pub use pad::{Gamepads, PAD_CONTROLS, PadControl, StickWay};
 pub use table::{ActionGroup, JointKeyError, Situation};
 
 use std::{cmp::Reverse, collections::BTreeMap};
@@ -212,7 +212,7 @@ pub struct Keys<'w, 's> {
     letters: Res<'w, KeyLetters>,
     hands: Res<'w, Hands>,
     chosen: Res<'w, Chosen>,
-    pads: Pads<'w, 's>,
+    pads: Gamepads<'w, 's>,
 }
 
 impl Keys<'_, '_> {

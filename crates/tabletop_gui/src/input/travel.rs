@@ -11,10 +11,10 @@ const SAME: f32 = 1e-3;
 
 /// The way of the chosen object, until it has arrived.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Travel(Option<Way>);
+pub(crate) struct Travel(Option<TravelWay>);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Way {
+struct TravelWay {
     object: Entity,
     /// Where it is to come, seen from above.
     goal: Vec3,
@@ -34,13 +34,13 @@ impl Travel {
         to: impl Fn(Vec3) -> Vec3,
     ) {
         let way = self.0.filter(|way| way.object == object);
-        let way = way.unwrap_or_else(|| Way {
+        let way = way.unwrap_or_else(|| TravelWay {
             object,
             goal: there.here,
             clearance: there.clearance(),
             sent: there.here,
         });
-        self.0 = Some(Way {
+        self.0 = Some(TravelWay {
             goal: to(way.goal + offset.with_z(0.0)),
             clearance: (way.clearance + offset.z).max(0.0),
             ..way
@@ -48,7 +48,7 @@ impl Travel {
     }
 }
 
-impl Way {
+impl TravelWay {
     /// The last place, and the next one on the way there.
     fn places(&self, there: &Neighborhood) -> [Vec3; 2] {
         // Snapping would hold back what goes on by steps.
@@ -89,7 +89,7 @@ pub(crate) fn follow(
     if next.distance(way.sent) >= SAME {
         let location = next;
         commands.write(Actor::Key, HandCommand::MoveTo { hand, location });
-        travel.0 = Some(Way { sent: next, ..way });
+        travel.0 = Some(TravelWay { sent: next, ..way });
     } else if there.here.distance(last) < SAME {
         travel.0 = None;
     }

@@ -8,9 +8,9 @@ use bevy::ecs::resource::Resource;
 use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
 use serde::{Deserialize, Serialize};
 
-use self::columns::Columns;
+use self::columns::PanelColumns;
 use crate::{
-    panels::panel::{Edge, Panel},
+    panels::panel::{Panel, PanelEdge},
     widgets::style::GAP,
 };
 
@@ -26,12 +26,12 @@ pub struct Panels {
     moved: BTreeMap<Panel, (f32, f32)>,
     /// The order in which all of them are stacked.
     stack: Vec<Panel>,
-    alignment: Alignment,
+    alignment: PanelAlignment,
 }
 
 /// Where the panels stand that the user has not moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Alignment {
+pub(crate) enum PanelAlignment {
     /// At both sides, so that the table between them is seen.
     #[default]
     Sides,
@@ -39,7 +39,7 @@ pub(crate) enum Alignment {
     Left,
 }
 
-impl Alignment {
+impl PanelAlignment {
     /// The order in which panels are stacked. At the sides, the first places are of those that a demonstration needs.
     const fn order(self) -> [Panel; Panel::ALL.len()] {
         match self {
@@ -65,8 +65,8 @@ impl Default for Panels {
         Self {
             open: BTreeSet::from([Panel::Status]),
             moved: BTreeMap::new(),
-            stack: Alignment::default().order().into(),
-            alignment: Alignment::default(),
+            stack: PanelAlignment::default().order().into(),
+            alignment: PanelAlignment::default(),
         }
     }
 }
@@ -111,7 +111,7 @@ impl Panels {
     }
 
     /// Stacks the open panels from the top downwards, even those that the user has moved. Those that are closed get the places below.
-    pub(crate) fn align(&mut self, alignment: Alignment) {
+    pub(crate) fn align(&mut self, alignment: PanelAlignment) {
         self.alignment = alignment;
         self.moved.clear();
         self.stack = alignment.order().into();
@@ -125,7 +125,7 @@ impl Panels {
 
     /// True if a panel lies along the lower edge of the desk, as wide as that.
     pub(crate) fn is_docked(&self, panel: Panel) -> bool {
-        panel.edge() == Edge::Bottom && !self.moved.contains_key(&panel)
+        panel.edge() == PanelEdge::Bottom && !self.moved.contains_key(&panel)
     }
 
     /// The upper left corner of a panel, so that all of it is seen on the desk if it is not larger than that.
@@ -147,15 +147,18 @@ impl Panels {
 
     /// The place of a panel in the columns at its side, or over the others where there is no more room.
     fn slot(&self, panel: Panel, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Pos2 {
-        let [mut left, mut right] = [Columns::new(desk.height()), Columns::new(desk.height())];
+        let [mut left, mut right] = [
+            PanelColumns::new(desk.height()),
+            PanelColumns::new(desk.height()),
+        ];
         let mut over = 0.0;
         let mut slot = desk.min;
         for &next in self.stack.iter().filter(|&&next| !self.is_docked(next)) {
             let size = size(next);
             let room = desk.width() - left.width() - right.width() - GAP;
             let is_left = match self.alignment {
-                Alignment::Sides => next.edge() == Edge::Left,
-                Alignment::Left => true,
+                PanelAlignment::Sides => next.edge() == PanelEdge::Left,
+                PanelAlignment::Left => true,
             };
             let stacked = match is_left {
                 true => left.stack(size, room).map(|at| desk.min + at),
@@ -234,7 +237,7 @@ mod tests {
 
     #[test]
     fn every_panel_is_in_the_order_of_each_alignment() {
-        for alignment in [Alignment::Sides, Alignment::Left] {
+        for alignment in [PanelAlignment::Sides, PanelAlignment::Left] {
             let order = BTreeSet::from(alignment.order());
             assert_eq!(order, BTreeSet::from(Panel::ALL));
         }
@@ -244,7 +247,7 @@ mod tests {
     fn every_panel_has_a_place_of_its_own_on_the_desk() {
         let mut panels = Panels::default();
         panels.set_all_open(true);
-        for alignment in [Alignment::Sides, Alignment::Left] {
+        for alignment in [PanelAlignment::Sides, PanelAlignment::Left] {
             panels.align(alignment);
             let rects = rects(&panels, WIDE);
             for (i, rect) in rects.iter().enumerate() {
@@ -269,9 +272,9 @@ mod tests {
         assert_eq!(place(&panels, Panel::DemonstrationTools), pos2(GAP, below));
         let beside = GAP + 300.0 + GAP;
         assert_eq!(place(&panels, Panel::Camera), pos2(beside, GAP));
-        panels.align(Alignment::Left);
+        panels.align(PanelAlignment::Left);
         assert_eq!(place(&panels, Panel::Objects), pos2(beside, below));
-        panels.align(Alignment::Sides);
+        panels.align(PanelAlignment::Sides);
         assert_eq!(place(&panels, Panel::Objects), pos2(right, GAP));
     }
 
@@ -295,7 +298,7 @@ mod tests {
         panels.move_to(Panel::Timeline, pos2(100.0, 50.0));
         assert!(!panels.is_docked(Panel::Timeline));
         assert_eq!(place(&panels, Panel::Timeline), pos2(100.0, 50.0));
-        panels.align(Alignment::Left);
+        panels.align(PanelAlignment::Left);
         assert!(panels.is_docked(Panel::Timeline));
     }
 
@@ -306,7 +309,7 @@ mod tests {
         panels.set_open(Panel::DemonstrationTools, true);
         panels.set_open(Panel::Robot, true);
         panels.move_to(Panel::Robot, pos2(500.0, 500.0));
-        panels.align(Alignment::Left);
+        panels.align(PanelAlignment::Left);
         let tall = Rect::from_min_size(Pos2::ZERO, vec2(1000.0, 1e6));
         let place = |panel: &Panel| panels.place(*panel, tall, size);
         let mut order: Vec<_> = Panel::ALL.into();

@@ -11,7 +11,7 @@ use tabletop_user::{Action, Keymap};
 use crate::{
     display::DisplayOffer,
     panels::{
-        arrangement::{Alignment, Panels},
+        arrangement::{PanelAlignment, Panels},
         display::DisplayOverlay,
         help::Help,
         messages::Notices,
@@ -32,16 +32,16 @@ const GAP: f32 = 4.0;
 const ICON_SIZE: egui::Vec2 = egui::vec2(27.0, 23.0);
 
 /// The buttons that align the windows.
-const ALIGNMENTS: [(Icon, &str, Alignment); 2] = [
+const ALIGNMENTS: [(Icon, &str, PanelAlignment); 2] = [
     (
         Icon::AlignLeft,
         "Align the open windows at the left",
-        Alignment::Left,
+        PanelAlignment::Left,
     ),
     (
         Icon::AlignSides,
         "Align the open windows at both sides",
-        Alignment::Sides,
+        PanelAlignment::Sides,
     ),
 ];
 
@@ -63,7 +63,7 @@ struct Model<'a> {
 enum Request {
     ShowAll,
     Show(Panel),
-    Align(Alignment),
+    Align(PanelAlignment),
     HideAll,
     Scale(ScaleStep),
     Theme(Theme),
@@ -302,11 +302,11 @@ mod tests {
             ("Show all windows", Request::ShowAll),
             (
                 "Align the open windows at the left",
-                Request::Align(Alignment::Left),
+                Request::Align(PanelAlignment::Left),
             ),
             (
                 "Align the open windows at both sides",
-                Request::Align(Alignment::Sides),
+                Request::Align(PanelAlignment::Sides),
             ),
             ("Hide all windows", Request::HideAll),
         ] {
@@ -382,7 +382,7 @@ mod tests {
         let all = [true; Panel::ALL.len()];
         let none = [false; Panel::ALL.len()];
         assert_eq!(carried_out(Request::ShowAll), all);
-        assert_eq!(carried_out(Request::Align(Alignment::Left)), all);
+        assert_eq!(carried_out(Request::Align(PanelAlignment::Left)), all);
         assert_eq!(carried_out(Request::HideAll), none);
         for (i, panel) in Panel::ALL.into_iter().enumerate() {
             let open = carried_out(Request::Show(panel));

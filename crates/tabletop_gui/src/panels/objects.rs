@@ -5,6 +5,7 @@ mod keys;
 mod list;
 mod new_objects;
 mod present_object;
+mod selection;
 
 use std::path::PathBuf;
 
@@ -19,8 +20,8 @@ use tabletop_core::{Actor, CommandWriter, ObjectEdit, Preset, SceneCommand};
 use tabletop_user::{Action, Keymap};
 
 use self::{
-    list::ObjectList,
     present_object::{OnTable, PresentObject},
+    selection::Selection,
 };
 use crate::{
     files::{FileRequest, Files, TaskFile, short_name},
@@ -56,14 +57,6 @@ struct Model<'a> {
     objects: &'a [PresentObject],
     reloads: bool,
     keymap: &'a Keymap,
-}
-
-/// The selection in the lists.
-#[derive(Resource, Default)]
-struct Selection {
-    task: Option<PathBuf>,
-    entry: usize,
-    objects: ObjectList,
 }
 
 /// A wish of the user.

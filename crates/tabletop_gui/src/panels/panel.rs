@@ -32,7 +32,7 @@ pub enum Panel {
 
 /// The edge of the desk at which a panel stands, unless the user has moved it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Edge {
+pub(crate) enum PanelEdge {
     Left,
     Right,
     /// Along all of the lower edge.
@@ -107,13 +107,13 @@ impl Panel {
     }
 
     /// Where it stands.
-    pub(crate) const fn edge(self) -> Edge {
+    pub(crate) const fn edge(self) -> PanelEdge {
         match self {
-            Self::Status | Self::Camera | Self::Robot | Self::DemonstrationTools => Edge::Left,
+            Self::Status | Self::Camera | Self::Robot | Self::DemonstrationTools => PanelEdge::Left,
             Self::Pose | Self::Objects | Self::Recordings | Self::Plots | Self::Messages => {
-                Edge::Right
+                PanelEdge::Right
             }
-            Self::Timeline => Edge::Bottom,
+            Self::Timeline => PanelEdge::Bottom,
         }
     }
 

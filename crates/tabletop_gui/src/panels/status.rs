@@ -1,5 +1,6 @@
 //! The Status window (report figure 4): speeds of the picture and the simulation, the script, the recording.
 
+mod model;
 mod speed;
 mod words;
 
@@ -15,8 +16,10 @@ use tabletop_core::{
     TICKS_PER_SECOND,
 };
 
+pub use self::model::Renderer;
 use self::{
-    speed::{Clock, Means, Speed, measure, tell_time},
+    model::{FilmState, Model},
+    speed::{Clock, Speed, measure, tell_time},
     words::{frames, matlab, recording, simulated, undo, words_for},
 };
 use crate::{
@@ -31,15 +34,6 @@ const NAME_WIDTH: f32 = 84.0;
 
 /// Ticks between two frames of a recording (report section 4.1: four images a second).
 const TICKS_PER_FRAME: u64 = TICKS_PER_SECOND as u64 / 4;
-
-/// The renderer of the window. The code that opens the window sets it.
-#[derive(Resource, Clone, Debug, PartialEq, Eq)]
-pub struct Renderer {
-    /// The name that it gives itself.
-    pub name: String,
-    /// True if it draws on the processor instead of a graphics card.
-    pub is_software: bool,
-}
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Speed>()
@@ -66,38 +60,6 @@ fn follow_recording(mut facts: MessageReader<SimFact>, tick: Res<SimTick>, mut t
             };
         }
     }
-}
-
-/// The content of the window.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Model {
-    mean: Means,
-    /// True if nothing moves in the picture.
-    is_still: bool,
-    /// True if the world has been resting since the simulated time.
-    is_resting: bool,
-    /// The simulated time.
-    tick: SimTick,
-    is_paused: bool,
-    agent: Agent,
-    film: FilmState,
-    history: History,
-    renderer: Option<Renderer>,
-}
-
-/// The state of recordings.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-enum FilmState {
-    #[default]
-    None,
-    /// One is written.
-    Recorded {
-        folder: PathBuf,
-        segment: usize,
-        frame: u64,
-    },
-    /// One is played.
-    Replayed,
 }
 
 /// The resources from which the model is made.
@@ -188,6 +150,7 @@ mod tests {
     use tabletop_core::CorePlugin;
     use tabletop_user::UserPlugin;
 
+    use super::speed::Means;
     use super::*;
 
     #[test]

@@ -62,7 +62,7 @@ pub const PAD_CONTROLS: [(PadControl, Action); 21] = [
 
 /// The gamepads that are connected; without the feature `gamepad`, none.
 #[derive(SystemParam)]
-pub struct Pads<'w, 's> {
+pub struct Gamepads<'w, 's> {
     #[cfg(feature = "gamepad")]
     pads: Query<'w, 's, &'static bevy_input::gamepad::Gamepad>,
     #[cfg(not(feature = "gamepad"))]
@@ -73,7 +73,7 @@ pub struct Pads<'w, 's> {
 #[derive(Component)]
 struct NoPad;
 
-impl Pads<'_, '_> {
+impl Gamepads<'_, '_> {
     /// True while a button of this action is held down.
     pub fn is_held(&self, action: Action) -> bool {
         controls_of(action).any(|control| self.holds(control))
@@ -97,7 +97,7 @@ fn controls_of(action: Action) -> impl Iterator<Item = PadControl> {
 }
 
 #[cfg(not(feature = "gamepad"))]
-impl Pads<'_, '_> {
+impl Gamepads<'_, '_> {
     fn holds(&self, _: PadControl) -> bool {
         !self.none.is_empty()
     }
@@ -115,7 +115,7 @@ impl Pads<'_, '_> {
 mod connected {
     use bevy_input::gamepad::{GamepadAxis, GamepadButton};
 
-    use super::{PadControl, Pads, StickWay};
+    use super::{Gamepads, PadControl, StickWay};
 
     /// Where a control is read.
     enum Source {
@@ -163,7 +163,7 @@ mod connected {
         }
     }
 
-    impl Pads<'_, '_> {
+    impl Gamepads<'_, '_> {
         pub(super) fn holds(&self, control: PadControl) -> bool {
             match control.source() {
                 Source::Button(button) => self.pads.iter().any(|pad| pad.pressed(button)),

@@ -5,14 +5,14 @@ use bevy_egui::egui::{Vec2, vec2};
 use crate::widgets::style::GAP;
 
 /// Panels that are stacked from the top downwards, in columns: the first is at the side, and each next one nearer to the middle.
-pub(super) struct Columns {
+pub(super) struct PanelColumns {
     /// The height of the desk.
     height: f32,
     /// The size of each column.
     columns: Vec<Vec2>,
 }
 
-impl Columns {
+impl PanelColumns {
     pub const fn new(height: f32) -> Self {
         Self {
             height,
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn a_stack_that_is_too_tall_goes_on_in_another_column() {
-        let mut columns = Columns::new(700.0);
+        let mut columns = PanelColumns::new(700.0);
         for number in 0..9 {
             let (column, row) = ((number / 3) as f32, (number % 3) as f32);
             let expected = vec2(GAP + column * (300.0 + GAP), GAP + row * (200.0 + GAP));
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_panel_that_fits_below_an_earlier_column_goes_there() {
-        let mut columns = Columns::new(700.0);
+        let mut columns = PanelColumns::new(700.0);
         let mut place = |width, height| columns.stack(vec2(width, height), ROOM);
         let second = GAP + 300.0 + GAP;
         assert_eq!(place(300.0, 120.0), Some(vec2(GAP, GAP)));
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_panel_finds_no_place_where_another_column_would_be_too_wide() {
-        let mut columns = Columns::new(700.0);
+        let mut columns = PanelColumns::new(700.0);
         assert!(columns.stack(vec2(300.0, 600.0), ROOM).is_some());
         assert_eq!(columns.stack(vec2(300.0, 600.0), 300.0), None);
         assert!(columns.stack(vec2(200.0, 80.0), 0.0).is_some());

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use tabletop_core::{Actor, CommandWriter, ObjectEdit, Paused, SceneCommand};
 use tabletop_user::{Action, Chosen, KeySystems, was_struck};
 
-use super::{Selection, present_object::OnTable};
+use super::{present_object::OnTable, selection::Selection};
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Selection>().add_systems(

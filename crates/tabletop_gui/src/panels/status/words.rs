@@ -5,7 +5,7 @@ use std::time::Duration;
 use bevy_egui::egui::RichText;
 use tabletop_core::{Agent, History, TICKS_PER_SECOND};
 
-use super::{FilmState, Model, Renderer};
+use super::model::{FilmState, Model, Renderer};
 use crate::widgets::style::ThemeColors;
 
 /// Pictures a second. Of a still picture their number says nothing.
