@@ -3,13 +3,11 @@
 mod action;
 mod binding;
 mod letters;
-mod pad;
 mod table;
 
 pub use action::{Action, Way};
 pub use binding::{BindingError, KeyBinding, Modifiers};
 pub use letters::KeyLetters;
-pub use pad::{Gamepads, PAD_CONTROLS, PadControl, StickWay};
 pub use table::{ActionGroup, JointKeyError, Situation};
 
 use std::{cmp::Reverse, collections::BTreeMap};
@@ -205,43 +203,26 @@ impl KeyboardFocus {
 
 /// The actions that the user asks for with the keyboard in this frame.
 #[derive(SystemParam)]
-pub struct Keys<'w, 's> {
+pub struct Keys<'w> {
     keymap: Res<'w, Keymap>,
     keys: Res<'w, ButtonInput<KeyCode>>,
     focus: Res<'w, KeyboardFocus>,
     letters: Res<'w, KeyLetters>,
     hands: Res<'w, Hands>,
     chosen: Res<'w, Chosen>,
-    pads: Gamepads<'w, 's>,
 }
 
-impl Keys<'_, '_> {
-    /// True while a key of this action, or a button of a gamepad, is held down.
+impl Keys<'_> {
+    /// True while a key of this action is held down.
     pub fn is_held(&self, action: Action) -> bool {
         let mut held = self.keys.get_pressed();
         held.any(|key| self.meaning(*key) == Some(action))
-            || (self.has_pads(action) && self.pads.is_held(action))
     }
 
-    /// True if a key of this action, or a button of a gamepad, went down in this frame, even if it is up again.
+    /// True if a key of this action went down in this frame, even if it is up again.
     pub fn was_struck(&self, action: Action) -> bool {
         let mut struck = self.keys.get_just_pressed();
         struck.any(|key| self.meaning(*key) == Some(action))
-            || (self.has_pads(action) && self.pads.was_struck(action))
-    }
-
-    /// How far sticks and triggers of a gamepad are pushed: 1 for all the way to the first action, -1 for all the way to the second.
-    pub fn push(&self, plus: Action, minus: Action) -> f32 {
-        let push = |action| match self.has_pads(action) {
-            true => self.pads.push(action),
-            false => 0.0,
-        };
-        push(plus) - push(minus)
-    }
-
-    /// True if gamepads do an action now.
-    fn has_pads(&self, action: Action) -> bool {
-        *self.focus == KeyboardFocus::World && self.is_present(self.keymap.situation(action))
     }
 
     fn is_present(&self, situation: Situation) -> bool {

@@ -31,9 +31,8 @@ pub use ghost::{Ghost, Ghosts};
 pub use held_axes::HeldAxes;
 pub use imitating::{Imitating, TaskOrder};
 pub use keymap::{
-    Action, ActionGroup, BindingError, Gamepads, JointKeyError, KeyBinding, KeyLetters, KeySystems,
-    KeyboardFocus, Keymap, Keys, Modifiers, PAD_CONTROLS, PadControl, Situation, StickWay, Way,
-    was_struck,
+    Action, ActionGroup, BindingError, JointKeyError, KeyBinding, KeyLetters, KeySystems,
+    KeyboardFocus, Keymap, Keys, Modifiers, Situation, Way, was_struck,
 };
 pub use measuring::Measuring;
 pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};

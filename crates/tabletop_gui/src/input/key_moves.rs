@@ -235,49 +235,11 @@ fn turn(
 struct Repeats {
     /// The time of the next one.
     next: Duration,
-    /// The time of the last frame.
-    last: Duration,
-    /// The parts of steps that a gamepad has pushed.
-    pushed: [f32; 3],
 }
 
 impl Repeats {
     /// The steps in this frame along each axis.
     fn steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
-        let pushed = self.pushed_steps(keys, actions, every, now);
-        let struck = self.struck_steps(keys, actions, every, now);
-        std::array::from_fn(|axis| pushed[axis] + struck[axis])
-    }
-
-    /// The steps of sticks and triggers, which move the faster the farther they are pushed.
-    fn pushed_steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
-        let passed = now.saturating_sub(self.last).div_duration_f32(every);
-        let passed = passed.min(MOST_STEPS as f32);
-        self.last = now;
-        std::array::from_fn(|axis| {
-            let [plus, minus] = actions[axis];
-            let pushed = match keys.push(plus, minus) {
-                0.0 => 0.0,
-                push => self.pushed[axis] + push * passed,
-            };
-            self.pushed[axis] = pushed.fract();
-            pushed.trunc() as i32
-        })
-    }
-
-    fn struck_steps(
         &mut self,
         keys: &Keys,
         actions: &[[Action; 2]; 3],
