@@ -7,6 +7,8 @@ mod display;
 mod editing;
 mod files;
 mod frame_rate;
+#[cfg(feature = "gamepad")]
+mod gamepads;
 mod idle;
 mod no_window;
 mod opening;
@@ -194,6 +196,8 @@ fn build(options: WindowOptions) -> App {
     .insert_resource(AllowedFolders(options.allowed))
     .insert_resource(PresetSeeds::new(options.seed))
     .insert_resource(Opening::Begun(beginning));
+    #[cfg(feature = "gamepad")]
+    app.add_plugins(gamepads::plugin);
     match options.show {
         Show::Task(setup) => {
             let load = move |mut commands: CommandWriter| {

@@ -8,6 +8,7 @@ use bevy::{
     winit::{UpdateMode, WinitSettings},
 };
 use tabletop_core::{Idle, Paused};
+use tabletop_user::Gamepad;
 
 use super::{opening::Opening, redraw::Redraw};
 
@@ -30,12 +31,13 @@ struct LastAct(Duration);
 fn note_acts(
     mut events: MessageReader<WindowEvent>,
     redraw: Res<Redraw>,
+    gamepad: Res<Gamepad>,
     idle: Res<Idle>,
     time: Res<Time<Real>>,
     mut last: ResMut<LastAct>,
 ) {
     let is_of_user = |event: &&WindowEvent| !matches!(event, WindowEvent::RequestRedraw(_));
-    let has_acted = events.read().filter(is_of_user).count() > 0;
+    let has_acted = events.read().filter(is_of_user).count() > 0 || gamepad.is_used();
     last.0 = match has_acted || *idle == Idle(0) {
         true => time.elapsed(),
         false => last.0.max(redraw.moved_at()),
@@ -81,6 +83,7 @@ mod tests {
         let mut app = App::new();
         app.add_plugins(MinimalPlugins)
             .add_message::<WindowEvent>()
+            .init_resource::<Gamepad>()
             .init_resource::<Idle>()
             .init_resource::<Paused>()
             .init_resource::<Redraw>()

@@ -2,11 +2,13 @@
 
 mod action;
 mod binding;
+mod gamepad;
 mod letters;
 mod table;
 
 pub use action::{Action, Way};
 pub use binding::{BindingError, KeyBinding, Modifiers};
+pub use gamepad::{Gamepad, GamepadControl, StickWay};
 pub use letters::KeyLetters;
 pub use table::{ActionGroup, JointKeyError, Situation};
 
@@ -201,7 +203,7 @@ impl KeyboardFocus {
     }
 }
 
-/// The actions that the user asks for with the keyboard in this frame.
+/// The actions that the user asks for with the keyboard and gamepads in this frame.
 #[derive(SystemParam)]
 pub struct Keys<'w> {
     keymap: Res<'w, Keymap>,
@@ -210,19 +212,36 @@ pub struct Keys<'w> {
     letters: Res<'w, KeyLetters>,
     hands: Res<'w, Hands>,
     chosen: Res<'w, Chosen>,
+    gamepad: Res<'w, Gamepad>,
 }
 
 impl Keys<'_> {
-    /// True while a key of this action is held down.
+    /// True while a key or button of this action is held down.
     pub fn is_held(&self, action: Action) -> bool {
         let mut held = self.keys.get_pressed();
         held.any(|key| self.meaning(*key) == Some(action))
+            || (self.gamepad.is_held(action) && self.reaches(action))
     }
 
-    /// True if a key of this action went down in this frame, even if it is up again.
+    /// True if a key or button of this action went down in this frame, even if it is up again.
     pub fn was_struck(&self, action: Action) -> bool {
         let mut struck = self.keys.get_just_pressed();
         struck.any(|key| self.meaning(*key) == Some(action))
+            || (self.gamepad.was_struck(action) && self.reaches(action))
+    }
+
+    /// How far sticks and triggers of gamepads are pushed: 1 all the way to the first action, -1 to the second.
+    pub fn push(&self, plus: Action, minus: Action) -> f32 {
+        let push = |action| match self.reaches(action) {
+            true => self.gamepad.push_of(action),
+            false => 0.0,
+        };
+        push(plus) - push(minus)
+    }
+
+    /// True if gamepads do an action now.
+    fn reaches(&self, action: Action) -> bool {
+        *self.focus == KeyboardFocus::World && self.is_present(self.keymap.situation(action))
     }
 
     fn is_present(&self, situation: Situation) -> bool {
@@ -279,6 +298,7 @@ mod tests {
         world.init_resource::<ButtonInput<KeyCode>>();
         world.init_resource::<Hands>();
         world.init_resource::<Chosen>();
+        world.init_resource::<Gamepad>();
         world
     }
 
@@ -456,6 +476,33 @@ mod tests {
         assert_eq!(asked(&mut world, KeyboardFocus::World), all);
         assert_eq!(asked(&mut world, KeyboardFocus::Overlay), [help]);
         assert_eq!(asked(&mut world, KeyboardFocus::Text), [help]);
+    }
+
+    #[test]
+    fn a_gamepad_does_actions_where_keys_would() {
+        let mut world = world();
+        let mut pad = Gamepad::default();
+        pad.push(GamepadControl::Select, 1.0);
+        pad.push(GamepadControl::South, 1.0);
+        pad.push_stick(
+            GamepadControl::LeftStick,
+            [StickWay::Left, StickWay::Right],
+            -0.5,
+        );
+        world.insert_resource(pad);
+        let asked = |world: &mut World| {
+            let asked = |keys: Keys| {
+                let struck = [Action::Pause, Action::TakeOrRelease];
+                let push = keys.push(Action::ObjectRight, Action::ObjectLeft);
+                (struck.map(|action| keys.was_struck(action)), push)
+            };
+            world.run_system_once(asked).unwrap()
+        };
+        assert_eq!(asked(&mut world), ([true, false], 0.0));
+        choose_something(&mut world);
+        assert_eq!(asked(&mut world), ([true, true], -0.5));
+        world.insert_resource(KeyboardFocus::Overlay);
+        assert_eq!(asked(&mut world), ([false, false], 0.0));
     }
 
     #[test]

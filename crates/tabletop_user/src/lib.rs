@@ -31,8 +31,9 @@ pub use ghost::{Ghost, Ghosts};
 pub use held_axes::HeldAxes;
 pub use imitating::{Imitating, TaskOrder};
 pub use keymap::{
-    Action, ActionGroup, BindingError, JointKeyError, KeyBinding, KeyLetters, KeySystems,
-    KeyboardFocus, Keymap, Keys, Modifiers, Situation, Way, was_struck,
+    Action, ActionGroup, BindingError, Gamepad, GamepadControl, JointKeyError, KeyBinding,
+    KeyLetters, KeySystems, KeyboardFocus, Keymap, Keys, Modifiers, Situation, StickWay, Way,
+    was_struck,
 };
 pub use measuring::Measuring;
 pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};
@@ -73,6 +74,7 @@ impl Plugin for UserPlugin {
             .init_resource::<Editing>()
             .init_resource::<Ghosts>()
             .init_resource::<Imitating>()
+            .init_resource::<Gamepad>()
             .init_resource::<KeyLetters>()
             .init_resource::<KeyboardFocus>()
             .init_resource::<Keymap>()

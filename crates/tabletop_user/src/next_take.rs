@@ -38,7 +38,7 @@ impl NextTake {
             .ok()
     }
 
-    /// A name as it can be a folder's: without what separates folders, and not hidden.
+    /// A name as it can be a folder's: without what separates folders, not hidden, and no option of a command line.
     pub fn usable_name(typed: &str) -> String {
         let usable = typed
             .chars()
@@ -49,7 +49,7 @@ impl NextTake {
             })
             .take(MOST_LETTERS);
         let usable: String = usable.collect();
-        usable.trim_start_matches(['.', ' ']).to_owned()
+        usable.trim_start_matches(['.', ' ', '-']).to_owned()
     }
 }
 
@@ -87,7 +87,8 @@ mod tests {
     #[test]
     fn a_name_stays_in_its_folder() {
         for (typed, name) in [
-            ("../../etc/x", "-..-etc-x"),
+            ("../../etc/x", "etc-x"),
+            ("--best", "best"),
             (".hidden", "hidden"),
             ("two words", "two words"),
             ("tab\there", "tab-here"),

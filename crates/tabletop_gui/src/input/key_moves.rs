@@ -230,16 +230,54 @@ fn turn(
     }
 }
 
-/// The repeats of keys that stay down.
+/// The repeats of keys that stay down, and of what a gamepad pushes.
 #[derive(Default)]
 struct Repeats {
     /// The time of the next one.
     next: Duration,
+    /// The time of the last frame.
+    last: Duration,
+    /// The parts of steps that a gamepad has pushed.
+    pushed: [f32; 3],
 }
 
 impl Repeats {
     /// The steps in this frame along each axis.
     fn steps(
+        &mut self,
+        keys: &Keys,
+        actions: &[[Action; 2]; 3],
+        every: Duration,
+        now: Duration,
+    ) -> [i32; 3] {
+        let pushed = self.pushed_steps(keys, actions, every, now);
+        let struck = self.struck_steps(keys, actions, every, now);
+        std::array::from_fn(|axis| pushed[axis] + struck[axis])
+    }
+
+    /// The steps of sticks and triggers, which move the faster the farther they are pushed.
+    fn pushed_steps(
+        &mut self,
+        keys: &Keys,
+        actions: &[[Action; 2]; 3],
+        every: Duration,
+        now: Duration,
+    ) -> [i32; 3] {
+        let passed = now.saturating_sub(self.last).div_duration_f32(every);
+        let passed = passed.min(MOST_STEPS as f32);
+        self.last = now;
+        std::array::from_fn(|axis| {
+            let [plus, minus] = actions[axis];
+            let pushed = match keys.push(plus, minus) {
+                0.0 => 0.0,
+                push => self.pushed[axis] + push * passed,
+            };
+            self.pushed[axis] = pushed.fract();
+            pushed.trunc() as i32
+        })
+    }
+
+    fn struck_steps(
         &mut self,
         keys: &Keys,
         actions: &[[Action; 2]; 3],
@@ -271,6 +309,7 @@ mod tests {
     use KeyCode::{ArrowLeft, ArrowRight, ArrowUp, Digit7, Digit8, Enter, PageUp, ShiftLeft, Tab};
     use bevy::time::TimeUpdateStrategy;
     use tabletop_core::SimCommand;
+    use tabletop_user::{Gamepad, GamepadControl, StickWay};
 
     use super::*;
     use crate::test_world::TestWorld;
@@ -386,6 +425,27 @@ mod tests {
             }
         }
         assert!((2.8..3.2).contains(&moved), "{moved} units in a second");
+    }
+
+    #[test]
+    fn a_stick_moves_the_chosen_object_the_faster_the_farther_it_is_pushed() {
+        let moved = |push: f32| {
+            let mut test = world();
+            strike(&mut test, &[Tab]);
+            take(&mut test);
+            let mut pad = test.app.world_mut().resource_mut::<Gamepad>();
+            let along = [StickWay::Left, StickWay::Right];
+            pad.push_stick(GamepadControl::LeftStick, along, push);
+            let offset = |command| match command {
+                SimCommand::Hand(HandCommand::MoveBy { offset, .. }) => offset.x,
+                other => panic!("{other:?}"),
+            };
+            let frames = (0..100).flat_map(|_| test.hold_still());
+            frames.map(offset).sum::<f32>()
+        };
+        let [half, full] = [moved(-0.5), moved(1.0)];
+        assert!((-1.6..-1.4).contains(&half), "{half} units in a second");
+        assert!((2.8..3.1).contains(&full), "{full} units in a second");
     }
 
     #[test]
