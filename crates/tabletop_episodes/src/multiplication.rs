@@ -22,6 +22,7 @@ use std::{fmt, io, path::Path};
 use bevy::prelude::*;
 use serde_json::{Value, json};
 use tabletop_assembly::{IdAllocator, assemble};
+use tabletop_camera::Camera;
 use tabletop_controller::Sight;
 use tabletop_core::{
     HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
@@ -338,6 +339,8 @@ impl Multiplication {
         attempt: u64,
         folder: &Path,
     ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
+        let view = self.variation.in_view;
+        let view = view.then(|| StillScene::of(&beginning).camera);
         let VariedBeginning {
             scene,
             binding,
@@ -373,7 +376,7 @@ impl Multiplication {
         app.world_mut().write_command(RecordingCommand::Start);
         app.step(1);
         let before = Before::anything(&Sight::of(app.world_mut()));
-        let shown = self.act(&mut app, &binding, seed);
+        let shown = self.act(&mut app, &binding, seed, view.as_ref());
         finish_recording(app.world_mut()).map_err(MultiplyError::Record)?;
         Ok(shown.and_then(|()| lasts(&mut app, &self.task, &binding, &before)))
     }
@@ -390,9 +393,15 @@ impl Multiplication {
         found.to_string()
     }
 
-    fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, PlanFailure)> {
+    fn act(
+        &self,
+        app: &mut App,
+        binding: &Binding,
+        seed: u64,
+        view: Option<&Camera>,
+    ) -> Result<(), (usize, PlanFailure)> {
         let Some(RobotDemonstrator { body, .. }) = &self.robot else {
-            return perform(app, &self.shown, &self.task, &self.operated, binding);
+            return perform(app, &self.shown, &self.task, &self.operated, binding, view);
         };
         let mut stage = AppStage::new(app);
         let imitation = imitate(&mut stage, body, &self.task, binding, seed, |_| {});

@@ -3,6 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use bevy::prelude::*;
+use tabletop_camera::Camera;
 use tabletop_controller::Sight;
 use tabletop_core::{
     Hand, HandCommand, Hands, ObjectIndex, SimTick, StepApp as _, WriteCommand as _,
@@ -15,6 +16,7 @@ use tabletop_task::{
 
 use super::{
     operated::Operated,
+    still_scene::has_in_view,
     way::{CarriedWay, WayPoint},
 };
 
@@ -35,18 +37,21 @@ const LEAST_TURN: f32 = 1e-4;
 /// Largest motion in a tick, in units, of an object that stays in place.
 const SAME: f32 = 1e-3;
 
-/// Lets the hand do the task with the objects that take its roles, and checks its relations at the end. An error names the failed step.
+/// Lets the hand do the task with the objects that take its roles, and checks its relations at the end. What is put aside stays in view of a
+/// camera, if one is given. An error names the failed step.
 pub(super) fn perform(
     app: &mut App,
     shown: &Demonstration,
     task: &Task,
     operated: &[Operated],
     binding: &Binding,
+    view: Option<&Camera>,
 ) -> Result<(), (usize, PlanFailure)> {
     let sight = Sight::of(app.world_mut());
     let mut performance = Performance {
         binding,
         before: Before::anything(&sight),
+        view,
         acts: acts(shown, task)?,
         operations: operated.iter().map(|operated| (operated, None)).collect(),
         app,
@@ -66,6 +71,8 @@ struct Performance<'a> {
     app: &'a mut App,
     binding: &'a Binding,
     before: Before,
+    /// The camera that is to see everything.
+    view: Option<&'a Camera>,
     /// The steps, in the order in which their objects were grasped.
     acts: Vec<StepPerformance<'a>>,
     /// What else was done, and when it has been done again.
@@ -258,7 +265,7 @@ impl Performance<'_> {
         let pose = match &goal.reference {
             Reference::Table if goal.place == PlaceRange::Anywhere => {
                 let id = self.bound(&step.object)?;
-                let aside = free_place(sight, id, carried, from);
+                let aside = free_place(sight, id, carried, from, self.view);
                 aside.ok_or_else(|| PlanFailure::NoRoom(id.to_owned()))?
             }
             Reference::Table => Pose::IDENTITY,
@@ -418,8 +425,15 @@ fn obstacles(step: &TaskStep, sight: &Sight, id: &str) -> Vec<PlacedSolid> {
     others.flat_map(|(_, other)| other.solids()).collect()
 }
 
-/// The table's frame for an object that is put aside at a free place: as far from its present place as demonstrated, or near there.
-fn free_place(sight: &Sight, id: &str, carried: &CarriedWay, from: Pose) -> Option<Pose> {
+/// The table's frame for an object that is put aside at a free place: as far from its present place as demonstrated, or near there, and in
+/// view of the camera.
+fn free_place(
+    sight: &Sight,
+    id: &str,
+    carried: &CarriedWay,
+    from: Pose,
+    view: Option<&Camera>,
+) -> Option<Pose> {
     const AROUND: u16 = 12;
     const RINGS: u16 = 12;
     let object = sight.objects.get(id)?;
@@ -442,10 +456,12 @@ fn free_place(sight: &Sight, id: &str, carried: &CarriedWay, from: Pose) -> Opti
         ..with_object
     });
     frames.find(|frame| {
-        object
-            .solids_at(*frame * carried.last())
-            .iter()
-            .all(|solid| {
+        let place = *frame * carried.last();
+        let is_seen = view.is_none_or(|view| has_in_view(view, &object.shape, place));
+        let solids = object.solids_at(place);
+        let mut solids = solids.iter();
+        is_seen
+            && solids.all(|solid| {
                 let reach = |way: Vec3| solid.farthest(way).dot(way);
                 let is_on_table = [Vec3::X, Vec3::Y]
                     .into_iter()

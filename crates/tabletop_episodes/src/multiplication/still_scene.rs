@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use bevy::math::{BVec3, Vec3};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{HeadCamera, ObjectSpec, Picture};
+use tabletop_core::{HeadCamera, ObjectSpec, Picture, Shape};
 use tabletop_geometry::Pose;
-use tabletop_task::{Binding, Reference, Task, TaskStep};
+use tabletop_task::{Binding, PlaceRange, Reference, Task, TaskStep};
 
 use super::varied_beginning::VariedBeginning;
 
@@ -59,22 +59,8 @@ impl StillScene {
 
     /// True if an object would be wholly in the picture with this pose, were nothing before it.
     pub fn has_in_view(&self, id: &str, pose: Pose) -> bool {
-        let mut objects = self.objects.iter();
-        let Some(object) = objects.find(|object| object.id == id) else {
-            return false;
-        };
-        let bounds = object.shape.bounds(Pose::IDENTITY);
-        let mut corners = (0..8).map(|corner| {
-            let is_high = BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0);
-            pose * Vec3::select(is_high, bounds.high, bounds.low)
-        });
-        corners.all(|corner| self.sees(corner))
-    }
-
-    fn sees(&self, point: Vec3) -> bool {
-        let last = [self.camera.width, self.camera.height].map(|side| side as f32 - 1.0);
-        let pixel = self.camera.pixel_of(point);
-        pixel.is_some_and(|at| (0.0..=last[0]).contains(&at.x) && (0.0..=last[1]).contains(&at.y))
+        let object = self.object(id);
+        object.is_some_and(|object| has_in_view(&self.camera, &object.shape, pose))
     }
 
     /// True if all that a task moves is in view, wherever its steps take and put it.
@@ -84,7 +70,12 @@ impl StillScene {
             let Some(id) = binding.object(&step.object) else {
                 return false;
             };
-            let goal = scene.goal(step, binding);
+            // What is put aside gets its place later.
+            let is_exact = |_: &Pose| {
+                let goal = step.goal.as_ref();
+                goal.is_some_and(|goal| goal.place == PlaceRange::Exact)
+            };
+            let goal = scene.goal(step, binding).filter(is_exact);
             let mut ends = scene.pose(id).into_iter().chain(goal);
             let is_seen = ends.all(|end| scene.has_in_view(id, end));
             if let Some(goal) = goal {
@@ -96,8 +87,12 @@ impl StillScene {
 
     /// The pose of an object.
     pub fn pose(&self, id: &str) -> Option<Pose> {
+        Some(self.object(id)?.pose)
+    }
+
+    fn object(&self, id: &str) -> Option<&ObjectSpec> {
         let mut objects = self.objects.iter();
-        Some(objects.find(|object| object.id == id)?.pose)
+        objects.find(|object| object.id == id)
     }
 
     /// Gives an object another pose.
@@ -153,6 +148,20 @@ impl StillScene {
             })
         })
     }
+}
+
+/// True if a camera sees all of a shape with this pose, were nothing before it.
+pub(super) fn has_in_view(camera: &Camera, shape: &Shape, pose: Pose) -> bool {
+    let last = [camera.width, camera.height].map(|side| side as f32 - 1.0);
+    let sees = |point: Vec3| {
+        let pixel = camera.pixel_of(point);
+        pixel.is_some_and(|at| (0.0..=last[0]).contains(&at.x) && (0.0..=last[1]).contains(&at.y))
+    };
+    let bounds = shape.bounds(Pose::IDENTITY);
+    (0..8).all(|corner| {
+        let is_high = BVec3::new(corner & 1 != 0, corner & 2 != 0, corner & 4 != 0);
+        sees(pose * Vec3::select(is_high, bounds.high, bounds.low))
+    })
 }
 
 /// The role to whose present pose the goal of a step is related.
