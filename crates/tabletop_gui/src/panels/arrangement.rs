@@ -1,14 +1,14 @@
 //! The arrangement of panels: which are open, and their places (report section 2.4).
 
-mod columns;
+mod packing;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::ecs::resource::Resource;
-use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
+use bevy_egui::egui::{Pos2, Rect, Vec2, vec2};
 use serde::{Deserialize, Serialize};
 
-use self::columns::PanelColumns;
+use self::packing::{DeskSide, PanelPacking};
 use crate::{
     panels::panel::{Panel, PanelEdge},
     widgets::style::GAP,
@@ -139,34 +139,20 @@ impl Panels {
     }
 
     /// The part of the desk above the docked panels.
-    fn undocked(&self, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Rect {
+    pub(crate) fn undocked(&self, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Rect {
         let docked = self.open.iter().filter(|&&panel| self.is_docked(panel));
         let height: f32 = docked.map(|&panel| size(panel).y).sum();
         desk.with_max_y(desk.bottom() - height)
     }
 
-    /// The place of a panel in the columns at its side, or over the others where there is no more room.
+    /// The place of a panel beside the others, from its side on, or over them where there is no more room.
     fn slot(&self, panel: Panel, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Pos2 {
-        let [mut left, mut right] = [
-            PanelColumns::new(desk.height()),
-            PanelColumns::new(desk.height()),
-        ];
+        let mut packing = PanelPacking::new(desk);
         let mut over = 0.0;
         let mut slot = desk.min;
         for &next in self.stack.iter().filter(|&&next| !self.is_docked(next)) {
             let size = size(next);
-            let room = desk.width() - left.width() - right.width() - GAP;
-            let is_left = match self.alignment {
-                PanelAlignment::Sides => next.edge() == PanelEdge::Left,
-                PanelAlignment::Left => true,
-            };
-            let stacked = match is_left {
-                true => left.stack(size, room).map(|at| desk.min + at),
-                false => right
-                    .stack(size, room)
-                    .map(|at| pos2(desk.right() - at.x - size.x, desk.top() + at.y)),
-            };
-            let place = stacked.unwrap_or_else(|| {
+            let place = packing.pack(size, self.side(next)).unwrap_or_else(|| {
                 let middle = (desk.width() - size.x) / 2.0;
                 let place = desk.min + vec2(middle, GAP + over);
                 over += CASCADE;
@@ -177,6 +163,13 @@ impl Panels {
             }
         }
         slot
+    }
+
+    fn side(&self, panel: Panel) -> DeskSide {
+        match (self.alignment, panel.edge()) {
+            (PanelAlignment::Left, _) | (PanelAlignment::Sides, PanelEdge::Left) => DeskSide::Left,
+            (PanelAlignment::Sides, PanelEdge::Right | PanelEdge::Bottom) => DeskSide::Right,
+        }
     }
 
     /// Completes an arrangement from a file, which may be older than a panel.
@@ -199,6 +192,8 @@ pub(crate) fn kept_on(desk: Rect, place: Pos2, size: Vec2) -> Pos2 {
 
 #[cfg(test)]
 mod tests {
+    use bevy_egui::egui::pos2;
+
     use super::*;
 
     const DESK: Rect = Rect {

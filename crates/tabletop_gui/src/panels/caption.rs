@@ -3,17 +3,17 @@
 use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{Align2, Area, Context, Frame, Id, Order, RichText, vec2},
+    egui::{Align2, Area, Context, Frame, Id, Order, Rect, RichText, vec2},
 };
 use tabletop_core::ShownTask;
 use tabletop_user::{Action, Imitating, Keymap, TaskOrder};
 
 use crate::{
-    panels::bar,
+    panels::{arrangement::Panels, window::free_desk},
     widgets::{button::button, style::ACCENT},
 };
 
-/// Size of the sentence, and how far it is above the bar, in points.
+/// Size of the sentence, and how far it is above the lower edge of the desk, in points.
 const SIZE: f32 = 18.0;
 const ABOVE: f32 = 12.0;
 
@@ -22,6 +22,8 @@ struct Model<'a> {
     imitating: &'a Imitating,
     task: &'a ShownTask,
     keymap: &'a Keymap,
+    /// The part of the screen that is free at its lower edge.
+    desk: Rect,
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -33,6 +35,7 @@ fn show_caption(
     imitating: Res<Imitating>,
     task: Res<ShownTask>,
     keymap: Res<Keymap>,
+    panels: Res<Panels>,
     mut orders: MessageWriter<TaskOrder>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
@@ -42,6 +45,7 @@ fn show_caption(
         imitating: &imitating,
         task: &task,
         keymap: &keymap,
+        desk: free_desk(context, &panels),
     };
     orders.write_batch(show(context, &model));
 }
@@ -53,7 +57,7 @@ fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
         "The robot stops where it is ({})",
         model.keymap.hint(Action::Imitate)
     );
-    let below = context.viewport_rect().bottom() - bar::top(context);
+    let below = context.viewport_rect().bottom() - model.desk.bottom();
     Area::new(Id::new("caption"))
         .order(Order::Middle)
         .anchor(Align2::CENTER_BOTTOM, vec2(0.0, -below - ABOVE))
@@ -134,6 +138,7 @@ mod tests {
                 imitating: &stage.imitating,
                 task: &stage.task,
                 keymap: &stage.keymap,
+                desk: free_desk(ui.ctx(), &Panels::default()),
             };
             stage.orders.extend(show(ui.ctx(), &model));
         };

@@ -14,7 +14,7 @@ use tabletop_core::{
 
 use tabletop_perception::{Perception, PerceptionDemand};
 
-use crate::panels::bar;
+use crate::panels::{arrangement::Panels, window::free_desk};
 
 /// Width of the inset, as a part of the window's.
 const WIDTH: f32 = 0.4;
@@ -104,6 +104,7 @@ fn show_inset(
     mut view: ResMut<HeadView>,
     camera: Res<HeadCamera>,
     image: Res<SensorImage>,
+    panels: Res<Panels>,
     beliefs: Beliefs,
 ) {
     if !view.is_shown() {
@@ -114,9 +115,7 @@ fn show_inset(
         return;
     };
     upload(&mut shown, context, &image.picture);
-    let mut room = context.viewport_rect();
-    room.set_bottom(bar::top(context));
-    let inset = inset(room, aspect(&camera));
+    let inset = inset(free_desk(context, &panels), aspect(&camera));
     egui::Area::new(egui::Id::new("head view"))
         .fixed_pos(inset.min)
         .movable(false)

@@ -3,14 +3,14 @@
 use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{Align2, Area, Context, Frame, Id, Order, RichText, Ui, vec2},
+    egui::{Align2, Area, Context, Frame, Id, Order, Rect, RichText, Ui, vec2},
 };
 use serde::{Deserialize, Serialize};
 use tabletop_user::{Action, Dragging, Keymap};
 
 use crate::{
     kept::{Kept, keep},
-    panels::bar,
+    panels::{arrangement::Panels, window::free_desk},
     widgets::{button::button, style::GAP},
 };
 
@@ -52,21 +52,24 @@ pub(crate) fn plugin(app: &mut App) {
 fn show_hints(
     mut contexts: EguiContexts,
     keymap: Res<Keymap>,
+    panels: Res<Panels>,
     mut hints: ResMut<Hints>,
     mut dragging: ResMut<Dragging>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    match show(context, &keymap, dragging.is_level) {
+    let desk = free_desk(context, &panels);
+    match show(context, desk, &keymap, dragging.is_level) {
         Some(Request::Dismiss) => hints.are_read = true,
         Some(Request::DragLevel(is_level)) => dragging.is_level = is_level,
         None => {}
     }
 }
 
-fn show(context: &Context, keymap: &Keymap, is_level: bool) -> Option<Request> {
-    let below = context.viewport_rect().bottom() - bar::top(context);
+/// Shows the hints at the lower edge of the desk.
+fn show(context: &Context, desk: Rect, keymap: &Keymap, is_level: bool) -> Option<Request> {
+    let below = context.viewport_rect().bottom() - desk.bottom();
     Area::new(Id::new("hints"))
         .order(Order::Middle)
         .anchor(Align2::CENTER_BOTTOM, vec2(0.0, -below - GAP))
@@ -120,7 +123,8 @@ mod tests {
     fn harness(is_level: bool) -> Harness<'static, Option<Request>> {
         let keymap = Keymap::default();
         let frame = move |ui: &mut Ui, request: &mut Option<Request>| {
-            *request = show(ui.ctx(), &keymap, is_level).or(*request);
+            let desk = free_desk(ui.ctx(), &Panels::default());
+            *request = show(ui.ctx(), desk, &keymap, is_level).or(*request);
         };
         let mut harness = Harness::new_ui_state(frame, None);
         harness.run();

@@ -245,6 +245,11 @@ pub(crate) fn desk(context: &Context) -> Rect {
     desk
 }
 
+/// The part of the desk above the panels that are docked at its lower edge.
+pub(crate) fn free_desk(context: &Context, panels: &Panels) -> Rect {
+    panels.undocked(desk(context), &|panel| panel.size(context))
+}
+
 #[cfg(test)]
 mod tests {
     use bevy_egui::egui::pos2;
