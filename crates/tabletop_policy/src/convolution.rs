@@ -11,8 +11,9 @@ use crate::planes::Planes;
 
 /// Outputs of a convolution are a multiple of this.
 pub(crate) const BLOCK: usize = 16;
-/// Output planes, and neighbouring pixels, that are summed at once: as many as a processor with 16 vectors of four has room for.
-const TILE: [usize; 2] = [4, 12];
+/// Neighbouring pixels whose outputs are summed at once: with a block of outputs each, they are eight vectors of four, and leave a processor with sixteen
+/// of them room for weights. With three it is half as fast.
+const PIXELS: usize = 2;
 /// Pixels over which a weight's gradient is summed at a time, so that they stay in the nearest cache.
 const CHUNK: usize = 256;
 
@@ -114,12 +115,11 @@ impl Convolution {
         [inputs, outputs]: [usize; 2],
         weight: impl Fn(usize, usize, usize) -> f32,
     ) -> Vec<f32> {
-        let [rows, _] = TILE;
         let mut packed = Vec::with_capacity(inputs * outputs * self.taps());
-        for block in (0..outputs).step_by(rows) {
+        for block in (0..outputs).step_by(BLOCK) {
             for input in 0..inputs {
                 for tap in 0..self.taps() {
-                    packed.extend((block..block + rows).map(|output| weight(output, input, tap)));
+                    packed.extend((block..block + BLOCK).map(|output| weight(output, input, tap)));
                 }
             }
         }
@@ -153,35 +153,35 @@ fn convolve<const SIDE: usize>(
     input: &Planes,
     output: &mut Planes,
 ) {
-    const ROWS: usize = TILE[0];
-    const PIXELS: usize = TILE[1];
     let (stride, first, pitch) = (output.stride(), output.first(), output.pitch());
     let corner = (first - 1 - pitch) + (3 - SIDE) / 2 * (pitch + 1);
-    let in_block = packed.len() / biases.len() * ROWS;
+    let in_block = packed.len() / biases.len() * BLOCK;
     let blocks = packed.chunks_exact(in_block).zip(biases.as_chunks().0);
     let span = output.span();
     let numbers = output.numbers_mut();
     for pixel in (0..span).step_by(PIXELS) {
         for (block, (weights, biases)) in blocks.clone().enumerate() {
-            let biases: &[f32; ROWS] = biases;
-            let mut sums = biases.map(|bias| [bias; PIXELS]);
-            let mut weights = weights.as_chunks::<ROWS>().0.iter();
+            let biases: &[f32; BLOCK] = biases;
+            let mut sums = [*biases; PIXELS];
+            let mut weights = weights.as_chunks::<BLOCK>().0.iter();
             for plane in input.each() {
                 for row in 0..SIDE {
                     let from = corner + pixel + row * pitch;
                     let taps = plane[from..from + PIXELS + SIDE - 1].array_windows::<PIXELS>();
                     for (shifted, weights) in taps.zip(&mut weights) {
-                        for (sums, weight) in sums.iter_mut().zip(weights) {
-                            for (sum, number) in sums.iter_mut().zip(shifted) {
+                        for (sums, number) in sums.iter_mut().zip(shifted) {
+                            for (sum, weight) in sums.iter_mut().zip(weights) {
                                 *sum += weight * number;
                             }
                         }
                     }
                 }
             }
-            for (row, sums) in sums.iter().enumerate() {
-                let at = (block * ROWS + row) * stride + first + pixel;
-                numbers[at..at + PIXELS].copy_from_slice(sums);
+            for output in 0..BLOCK {
+                let at = (block * BLOCK + output) * stride + first + pixel;
+                for (number, sums) in numbers[at..at + PIXELS].iter_mut().zip(&sums) {
+                    *number = sums[output];
+                }
             }
         }
     }

@@ -61,7 +61,7 @@ impl Decision {
 }
 
 /// The first word of the format in a file, and its version.
-const FORMAT: &str = "tabletop-policy 1";
+const FORMAT: &str = "tabletop-policy 2";
 /// The most bytes of a policy's file.
 const MOST_BYTES: u64 = 1 << 26;
 

@@ -7,23 +7,27 @@ use tabletop_core::Picture;
 use crate::planes::Planes;
 
 /// Columns and rows.
-const SIZE: [usize; 2] = [160, 96];
+const SIZE: [usize; 2] = [160, 128];
 /// Pixels of the view per unit of the table.
-const PIXELS_PER_UNIT: f32 = 8.0;
+const PIXELS_PER_UNIT: f32 = 7.0;
+/// The point of the table's plane in the middle of the view. Behind what stands high at the back of a table of 20 x 12 units, the plane goes on.
+const MIDDLE: Vec2 = Vec2::new(0.0, 3.0);
 /// Red, green and blue, and the pixel's column and row, by which a network knows places of the table.
 pub(crate) const PLANES: usize = 5;
 
-/// The pixel of a point of the table's plane; the table's middle is that of the view, Y is up.
+/// The pixel of a point of the table's plane; Y is up.
 pub(crate) fn pixel_of(point: Vec2) -> Vec2 {
-    middle() + Vec2::new(point.x, -point.y) * PIXELS_PER_UNIT
+    let from_middle = point - MIDDLE;
+    middle() + Vec2::new(from_middle.x, -from_middle.y) * PIXELS_PER_UNIT
 }
 
 /// The point of the table's plane at a pixel.
 pub(crate) fn point_of(pixel: Vec2) -> Vec2 {
     let from_middle = (pixel - middle()) / PIXELS_PER_UNIT;
-    Vec2::new(from_middle.x, -from_middle.y)
+    MIDDLE + Vec2::new(from_middle.x, -from_middle.y)
 }
 
+/// The pixel in the middle.
 fn middle() -> Vec2 {
     (Vec2::from(SIZE.map(|side| side as f32)) - 1.0) / 2.0
 }
@@ -95,7 +99,21 @@ mod tests {
         let point = Vec3::new(-3.0, 2.0, 1.5);
         let pixel = pixel_behind(eye, point);
         assert!(point_before(eye, pixel, 1.5).distance(point) < 1e-4);
-        assert!(pixel_of(Vec2::new(-10.0, 6.0)).distance(Vec2::splat(-0.5)) < 1e-4);
+        let corner = Vec2::new(-80.0 / 7.0, 3.0 + 64.0 / 7.0);
+        assert!(pixel_of(corner).distance(Vec2::splat(-0.5)) < 1e-4);
+        assert!(point_of(pixel_of(point.truncate())).distance(point.truncate()) < 1e-4);
+    }
+
+    #[test]
+    fn what_stands_on_a_block_at_the_back_of_the_table_has_its_place_in_the_view() {
+        let eye = Camera::of_head(&HeadCamera::default(), &Table::default())
+            .pose
+            .location;
+        for x in [-8.0, 8.0] {
+            let behind = pixel_behind(eye, Vec3::new(x, 5.5, 2.5));
+            let last = Vec2::from(SIZE.map(|side| side as f32)) - 1.0;
+            assert!(behind == behind.clamp(Vec2::ZERO, last), "{behind}");
+        }
     }
 
     #[test]
