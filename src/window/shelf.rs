@@ -5,7 +5,7 @@ mod errand;
 mod moves;
 
 use std::{
-    path::{Path, PathBuf},
+    path::{self, Path, PathBuf},
     sync::mpsc::{Receiver, TryRecvError, channel},
     thread,
 };
@@ -97,10 +97,16 @@ fn obey(
     }
 }
 
+/// True if two paths lead to one folder, whether they begin at the working folder or not.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let [one, other] = [one, other].map(|path| path::absolute(path).ok());
+    one.is_some() && one == other
+}
+
 /// Refuses to move a recording that is being made or is open.
 fn free(folder: &Path, timeline: &Timeline) -> Result<(), String> {
     let is_in_use = match timeline.stage {
-        TimelineStage::Running | TimelineStage::Open => timeline.folder == folder,
+        TimelineStage::Running | TimelineStage::Open => is_same(&timeline.folder, folder),
         TimelineStage::Absent | TimelineStage::Finished => false,
     };
     match (is_in_use, timeline.stage) {
@@ -123,7 +129,8 @@ fn look(folder: &Path, shelf: &mut Shelf, reading: &mut Reading, timeline: &Time
     shelf.problem = found.as_ref().err().cloned();
     let running = (timeline.stage == TimelineStage::Running).then_some(&timeline.folder);
     let found = found.unwrap_or_default().into_iter();
-    let found: Vec<_> = found.filter(|found| Some(found) != running).collect();
+    let is_running = |found: &PathBuf| running.is_some_and(|running| is_same(running, found));
+    let found: Vec<_> = found.filter(|found| !is_running(found)).collect();
     let stamps: Vec<_> = found
         .iter()
         .map(|found| (found.clone(), stamp(found)))
@@ -279,6 +286,14 @@ mod tests {
             assert!(folder.join("session.jsonl").is_file());
         }
         assert_eq!(desk.notices().len(), 2);
+    }
+
+    #[test]
+    fn a_path_from_the_working_folder_on_leads_to_the_same_folder() {
+        let whole = std::env::current_dir().unwrap().join("a-01");
+        assert!(is_same("a-01".as_ref(), &whole));
+        assert!(is_same(&whole, "./a-01".as_ref()));
+        assert!(!is_same("a-02".as_ref(), &whole));
     }
 
     #[test]

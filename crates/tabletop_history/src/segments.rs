@@ -7,7 +7,8 @@ use bevy::{
     prelude::*,
 };
 use tabletop_core::{
-    CommandId, History, HistoryCommand, HistoryFact, IssuedCommand, Recording, SimFact, carry_out,
+    CommandId, History, HistoryCommand, HistoryFact, IssuedCommand, Recording, Replaying, SimFact,
+    carry_out,
 };
 
 use crate::{
@@ -109,11 +110,12 @@ fn keep(world: &mut World, cause: CommandId) {
     }
 }
 
-/// True if segments are kept now. Forgets those from before a recording that has begun, and those of one that has ended.
+/// True if segments are kept now. Forgets those from before a recording that has begun or is replayed, and those of one that has ended.
 fn is_kept(world: &mut World) -> bool {
     let is_recording = world.resource::<Recording>().0;
+    let is_replaying = world.resource::<Replaying>().0;
     let segments = world.resource::<Segments>();
-    let is_kept = is_recording || segments.keeps_always;
+    let is_kept = is_recording || (segments.keeps_always && !is_replaying);
     if !is_kept || segments.are_of_recording != is_recording {
         forget(world);
         world.resource_mut::<Segments>().are_of_recording = is_recording;
@@ -263,6 +265,10 @@ mod tests {
         assert_eq!(app.world().get(lamps[3]), Some(&Lamp([0; 1000])));
         tell(&mut app, HistoryCommand::Redo);
         assert_eq!(app.world().get(lamps[3]), Some(&Lamp([1; 1000])));
+        app.insert_resource(Replaying(true));
+        assert_eq!(begin(&mut app).undoable, 0, "nobody but the recording acts");
+        app.insert_resource(Replaying(false));
+        assert_eq!(begin(&mut app).undoable, 1);
         app.insert_resource(Recording(true));
         assert_eq!(begin(&mut app).undoable, 1);
         begin_change(app.world_mut(), CommandId::default());

@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ActuateSystems, CameraCarrier, Figure, HandCameras, HandImages, HeadCamera, PictureSystems,
-    RestingSystems, Robot, RobotLayout, RobotMode, SimSystems, TickSystems, require,
+    ActuateSystems, CameraCarrier, CommandSystems, Figure, HandCameras, HandImages, HeadCamera,
+    PictureSystems, RestingSystems, Robot, RobotLayout, RobotMode, SimSystems, TickSystems,
+    require,
 };
 use tabletop_history::RollbackApp;
 use tabletop_physics::PhysicsPlugin;
@@ -85,6 +86,11 @@ impl Plugin for RobotPlugin {
                 turn_camera
                     .after(ActuateSystems::Robot)
                     .in_set(SimSystems::Actuate),
+                // Undo has turned the neck, and a recording that begins notes where the camera looks.
+                turn_camera
+                    .after(CommandSystems::History)
+                    .before(CommandSystems::Recording)
+                    .in_set(TickSystems),
                 place_hand_cameras
                     .run_if(HandImages::is_asked)
                     .after(SimSystems::Sense)

@@ -217,8 +217,8 @@ impl FileSearch {
     fn choose(&self) -> Request {
         let mut path = self.folder.path.join(self.name.trim());
         let proposed = Path::new(self.purpose.file_name()).extension();
-        if let Some(extension) = proposed.filter(|_| path.extension().is_none()) {
-            path.set_extension(extension);
+        if let Some(extension) = proposed.filter(|&proposed| path.extension() != Some(proposed)) {
+            path.add_extension(extension);
         }
         Request::Choose(path)
     }
@@ -326,7 +326,11 @@ mod tests {
     #[test]
     fn a_file_is_saved_under_the_name_that_is_typed() {
         let folder = folder("save");
-        for (typed, name) in [("new", "new.xml"), ("new.xml", "new.xml")] {
+        for (typed, name) in [
+            ("new", "new.xml"),
+            ("new.xml", "new.xml"),
+            ("new v1.2", "new v1.2.xml"),
+        ] {
             let mut harness = harness(Purpose::Save, &folder);
             harness.state_mut().browser.search.as_mut().unwrap().name = typed.into();
             harness.run();

@@ -11,7 +11,7 @@ use bevy_egui::{
 };
 use tabletop_core::{
     Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand, ObjectSpec,
-    Recording, RecordingCommand, SimCommand, SimFact,
+    Recording, RecordingCommand, Replaying, SimCommand, SimFact,
 };
 use tabletop_user::{Action, Keymap, NextTake};
 
@@ -46,12 +46,12 @@ pub(crate) fn plugin(app: &mut App) {
 fn open_at_first_grasp(
     mut is_done: Local<bool>,
     mut facts: MessageReader<SimFact>,
+    replaying: Res<Replaying>,
     mut panels: ResMut<Panels>,
 ) {
-    let has_grasped = facts
-        .read()
-        .any(|fact| matches!(fact, SimFact::Hand(HandFact::Grasped { .. })));
-    if has_grasped && !*is_done {
+    let is_grasp = |fact: &SimFact| matches!(fact, SimFact::Hand(HandFact::Grasped { .. }));
+    let has_grasped = facts.read().filter(|fact| is_grasp(fact)).count() > 0;
+    if has_grasped && !replaying.0 && !*is_done {
         panels.set_open(Panel::DemonstrationTools, true);
         *is_done = true;
     }

@@ -151,7 +151,12 @@ impl EarlierCommands {
         hands_are_empty: bool,
     ) {
         self.noted.clear();
-        self.log.part_from_rest_of_tick(tick, commands);
+        let mut logged = commands.iter().filter(|issued| is_logged(&issued.command));
+        let goes_back = |first: &IssuedCommand| self.log.goes_back(tick, first.command.phase());
+        if logged.next().is_some_and(goes_back) {
+            self.log.append_pause(tick, true);
+            self.log.append_pause(tick, false);
+        }
         let mut follows = false;
         for issued in commands {
             let mut before = self.log.mark();
@@ -186,6 +191,13 @@ impl EarlierCommands {
                 actor: issued.actor,
                 before,
             });
+        }
+    }
+
+    /// Notes that a recording begins in this tick: in a pause, if undo has left commands of it.
+    pub(crate) fn begin_recording(&mut self, tick: SimTick) {
+        if self.log.goes_back(tick, CommandSystems::Recording) {
+            self.log.append_pause(tick, true);
         }
     }
 
@@ -355,15 +367,9 @@ impl EarlierLog {
         self.course = course;
     }
 
-    /// The commands with which a tick goes on after undo may be of earlier phases than those that undo has left of it: a pause lies between
-    /// them.
-    fn part_from_rest_of_tick(&mut self, tick: SimTick, commands: &[IssuedCommand]) {
-        let mut logged = commands.iter().filter(|issued| is_logged(&issued.command));
-        let first = logged.next().map(|issued| (tick, issued.command.phase()));
-        if !self.course.is_paused && first.is_some_and(|first| Some(first) <= self.course.last) {
-            self.append_pause(tick, true);
-            self.append_pause(tick, false);
-        }
+    /// True if a tick goes on with an earlier phase than those of the commands that undo has left of it: a pause has to lie between them.
+    fn goes_back(&self, tick: SimTick, phase: CommandSystems) -> bool {
+        !self.course.is_paused && Some((tick, phase)) <= self.course.last
     }
 
     fn append_pause(&mut self, tick: SimTick, paused: bool) {

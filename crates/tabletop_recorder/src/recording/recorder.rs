@@ -65,6 +65,7 @@ impl Recorder {
         stage: &RecordedWorld,
         timeline: &mut Timeline,
     ) -> Result<SimFact, RecorderError> {
+        self.earlier.begin_recording(tick);
         let header = SessionHeader {
             format: FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -79,9 +80,10 @@ impl Recorder {
         };
         let scene = stage.scene();
         let NewRecording {
-            opened: episode,
+            opened: mut episode,
             moved_aside,
         } = Episode::begin(&self.destination, &header, &scene, &self.earlier)?;
+        episode.note_pause(*stage.paused)?;
         *timeline = episode.timeline();
         self.episode = Some(episode);
         self.finish = None;

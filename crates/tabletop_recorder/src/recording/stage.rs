@@ -3,7 +3,7 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
     HandCamera, HandCameras, HandImages, HeadCamera, Joint, JointSpec, JointState, ObjectIndex,
-    ObjectSpec, Robot, RobotLayout, Shape, Table,
+    ObjectSpec, Paused, Robot, RobotLayout, Shape, Table,
 };
 use tabletop_geometry::Twist;
 
@@ -36,6 +36,7 @@ pub(crate) struct RecordedWorld<'w, 's> {
     pub(crate) hand_images: Res<'w, HandImages>,
     pub(crate) settings: Res<'w, SessionSettings>,
     robot: Res<'w, Robot>,
+    pub(crate) paused: Res<'w, Paused>,
     pub(crate) layout: Res<'w, RobotLayout>,
 }
 

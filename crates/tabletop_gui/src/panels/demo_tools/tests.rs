@@ -11,13 +11,14 @@ use super::*;
 use crate::panels::test_click::after_click;
 
 #[test]
-fn the_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
+fn the_users_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, CorePlugin::default(), UserPlugin))
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
         .init_resource::<Panels>()
         .add_systems(Update, open_at_first_grasp);
-    for is_open in [true, false] {
+    for (is_replaying, is_open) in [(true, false), (false, true), (false, false)] {
+        app.insert_resource(Replaying(is_replaying));
         app.world_mut()
             .write_message(SimFact::Hand(HandFact::Grasped {
                 cause: tabletop_core::CommandId(0),

@@ -33,10 +33,15 @@ impl Episode {
             self.marks.clear();
         }
         self.tick = tick;
-        if self.is_paused == paused.0 {
-            return Ok(());
+        self.note_pause(paused)
+    }
+
+    /// Logs a pause that no command has begun or ended.
+    pub(crate) fn note_pause(&mut self, paused: Paused) -> Result<(), RecorderError> {
+        match self.is_paused == paused.0 {
+            true => Ok(()),
+            false => self.log_pause(paused.0),
         }
-        self.log_pause(paused.0)
     }
 
     pub(super) fn progress(&self) -> RecordingProgress {
