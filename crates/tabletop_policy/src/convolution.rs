@@ -177,11 +177,11 @@ fn convolve<const SIDE: usize>(
                     }
                 }
             }
-            for output in 0..BLOCK {
+            let columns: [[f32; PIXELS]; BLOCK] =
+                std::array::from_fn(|output| sums.map(|sums| sums[output]));
+            for (output, column) in columns.iter().enumerate() {
                 let at = (block * BLOCK + output) * stride + first + pixel;
-                for (number, sums) in numbers[at..at + PIXELS].iter_mut().zip(&sums) {
-                    *number = sums[output];
-                }
+                numbers[at..at + PIXELS].copy_from_slice(column);
             }
         }
     }
