@@ -436,9 +436,11 @@ mod tests {
             let mut pad = test.app.world_mut().resource_mut::<Gamepad>();
             let along = [StickWay::Left, StickWay::Right];
             pad.push_stick(GamepadControl::LeftStick, along, push);
-            let offset = |command| match command {
-                SimCommand::Hand(HandCommand::MoveBy { offset, .. }) => offset.x,
-                other => panic!("{other:?}"),
+            let offset = |command| {
+                let SimCommand::Hand(HandCommand::MoveBy { offset, .. }) = command else {
+                    panic!("{command:?}");
+                };
+                offset.x
             };
             let frames = (0..100).flat_map(|_| test.hold_still());
             frames.map(offset).sum::<f32>()
