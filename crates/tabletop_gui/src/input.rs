@@ -25,4 +25,5 @@ pub(crate) mod script_control;
 pub(crate) mod snapshot;
 pub(crate) mod travel;
 pub(crate) mod turns;
+pub(crate) mod typing;
 pub(crate) mod wheel;

@@ -53,7 +53,9 @@ pub mod prelude {
 }
 
 use bevy::{asset::AssetEventSystems, prelude::*};
-use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
+use bevy_egui::{
+    EguiGlobalSettings, EguiInputSystemSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext,
+};
 use tabletop_user::{UserCamera, UserPlugin};
 
 /// Adds keys and panels. Needs Bevy's renderer and [`CorePlugin`](tabletop_core::CorePlugin).
@@ -67,6 +69,11 @@ impl Plugin for GuiPlugin {
             .init_resource::<PresetSeeds>()
             .insert_resource(EguiGlobalSettings {
                 auto_create_primary_context: false,
+                input_system_settings: EguiInputSystemSettings {
+                    // `input::typing` does it.
+                    run_write_keyboard_input_messages_system: false,
+                    ..default()
+                },
                 ..default()
             })
             .add_plugins(EguiPlugin {
@@ -78,6 +85,7 @@ impl Plugin for GuiPlugin {
                 PostUpdate,
                 EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
             )
+            .add_plugins(input::typing::plugin)
             .add_observer(draw_panels_over);
         add_parts(app);
     }

@@ -9,6 +9,7 @@ use tabletop_film::Canvas;
 use tabletop_geometry::Pose;
 use tabletop_gui::{Notices, Tone};
 use tabletop_storage::Storage;
+use tabletop_user::RobotLook;
 
 /// The user's camera: its pose in the table's frame, and its angle of view from top to bottom in rad.
 pub(super) fn view(world: &mut World) -> Option<(Pose, f32)> {
@@ -53,9 +54,77 @@ pub(super) fn save(world: &mut World, path: &Path, [width, height]: [u32; 2]) {
     world.resource_mut::<Notices>().renew(tone, &text);
 }
 
-fn draw(In(camera): In<Camera>, world: VisibleWorld) -> Picture {
-    let (mut scene, mut picture) = (Scene::default(), Picture::default());
+fn draw(In(camera): In<Camera>, world: VisibleWorld, look: Res<RobotLook>) -> Picture {
+    let mut scene = Scene::default();
     world.draw(FiguresSeen::FromElsewhere, &mut scene, &mut Vec::new());
-    Rasterizer::default().draw(&scene, &camera, &mut picture);
+    drawn(scene, &camera, *look)
+}
+
+/// The picture of a scene whose figures are the robot.
+fn drawn(mut scene: Scene, camera: &Camera, look: RobotLook) -> Picture {
+    let mut rasterizer = Rasterizer::default();
+    let mut picture = Picture::default();
+    rasterizer.draw(&scene, camera, &mut picture);
+    if look.is_translucent {
+        let mut behind = Picture::default();
+        scene.figures.clear();
+        rasterizer.draw(&scene, camera, &mut behind);
+        for (color, &behind) in picture.rgb.iter_mut().zip(&behind.rgb) {
+            let [front, behind] = [*color, behind].map(f32::from);
+            *color = behind.lerp(front, RobotLook::OPACITY).round() as u8;
+        }
+    }
     picture
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_camera::{DrawnFigure, DrawnSolid, Facets};
+    use tabletop_geometry::{Rgb, Solid, Triangles};
+
+    use super::*;
+
+    #[test]
+    fn what_is_behind_a_translucent_robot_is_seen() {
+        let plate = Triangles {
+            positions: [[-2.0, -2.0], [2.0, -2.0], [0.0, 2.0]]
+                .map(|[x, y]| Vec3::new(x, y, 0.0))
+                .into(),
+            normals: vec![Vec3::Z; 3],
+            colors: vec![Rgb::BLUE; 3],
+            indices: vec![[0, 1, 2]],
+        };
+        let scene = Scene {
+            solids: vec![DrawnSolid {
+                pose: Pose::IDENTITY,
+                solid: Solid::Cuboid(Vec3::splat(6.0)),
+                color: Rgb::RED,
+                object: 1,
+            }],
+            figures: vec![DrawnFigure {
+                pose: Pose::at(Vec3::Z * 5.0),
+                facets: Facets::from(&plate).into(),
+                object: 2,
+            }],
+            markers: Vec::new(),
+        };
+        let camera = Camera {
+            pose: Pose::at(Vec3::Z * 20.0),
+            vertical_fov: 0.3,
+            square_fov: false,
+            width: 9,
+            height: 9,
+            antialiasing: false,
+            light: HeadCamera::default().light,
+        };
+        let middle = |is_translucent| {
+            let picture = drawn(scene.clone(), &camera, RobotLook { is_translucent });
+            let first = 3 * (4 * 9 + 4);
+            (picture.rgb[first], picture.rgb[first + 2])
+        };
+        let (red, blue) = middle(false);
+        assert!(red < blue, "{red} {blue}");
+        let (red, blue) = middle(true);
+        assert!(0 < blue && blue < red, "{red} {blue}");
+    }
 }

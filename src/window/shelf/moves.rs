@@ -71,7 +71,7 @@ mod tests {
         assert!(rename(&from, " ").is_err());
         rename(&from, "a-01").unwrap();
         rename(&from, "../best").unwrap();
-        assert_eq!(read(&shelf, "-best/session.jsonl"), "a-01");
+        assert_eq!(read(&shelf, "best/session.jsonl"), "a-01");
         assert_eq!(read(&shelf, "a-02/session.jsonl"), "a-02");
     }
 

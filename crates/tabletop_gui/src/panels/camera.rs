@@ -13,7 +13,7 @@ use tabletop_user::{Action, CameraMotion, CameraView, Keymap, RobotLook, Steerin
 use crate::{
     files::FileRequest,
     panels::{Panel, Panels},
-    widgets::{button::switch, style::ACCENT},
+    widgets::{button::switch, number::number_field, style::ACCENT},
 };
 
 /// Sides of a pad in points.
@@ -115,8 +115,8 @@ fn picture(ui: &mut Ui, PictureSize(size): &mut PictureSize) -> Option<[u32; 2]>
         .on_hover_text("Save the view without panels")
         .clicked();
     for (side, name) in size.iter_mut().zip(["Columns", "Rows"]) {
-        let field = ui.add(egui::DragValue::new(side).range(1..=LARGEST));
-        field.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, true, name));
+        let field = number_field(name, side, |field| field.range(1..=LARGEST));
+        let field = ui.add(field);
         field.on_hover_text(format!("{name} of the picture"));
     }
     is_asked.then_some(*size)

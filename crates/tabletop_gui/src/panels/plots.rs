@@ -1,13 +1,16 @@
 //! The Plots window: quantities over time, of the world as it goes on or of the recording that the Timeline shows.
 
+mod legend;
 mod live;
+
+use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{Color32, ComboBox, Rect, Ui, Vec2b, WidgetInfo, WidgetType},
+    egui::{ComboBox, Rangef, Rect, Ui, Vec2b, WidgetInfo, WidgetType},
 };
-use egui_plot::{Legend, Line, Plot, PlotPoints, VLine};
+use egui_plot::{AxisHints, Line, Plot, PlotPoints, Points, VLine};
 use tabletop_core::{
     Idle, Playback, PlaybackOrder, SimTick, TICKS_PER_SECOND, Timeline, TimelineStage,
 };
@@ -26,8 +29,12 @@ const HEIGHT: f32 = 260.0;
 /// The most curves that are drawn.
 const MOST_CURVES: usize = 60;
 
-/// The colour of the line at the playhead.
-const PLAYHEAD: Color32 = Color32::WHITE;
+/// The least distances of numbers along the axes, in points. Least and best ones that differ would make numbers pale.
+const NUMBERS_X: f32 = 40.0;
+const NUMBERS_Y: f32 = 20.0;
+
+/// The radius of a curve that is a single point, in points.
+const POINT: f32 = 3.0;
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<PlotView>()
@@ -48,6 +55,8 @@ struct PlotView {
     object: Option<String>,
     /// True if the world as it goes on is shown though there is a recording.
     is_live: bool,
+    /// The names of curves that are not drawn.
+    hidden: BTreeSet<String>,
 }
 
 /// The content of the window.
@@ -224,23 +233,60 @@ fn show(ui: &mut Ui, model: &Model, view: &mut PlotView) -> (Option<Request>, Re
         }
         (None, Some(_)) => {}
     }
-    let plot = Plot::new("plot")
+    let drawn = ui.vertical(|ui| draw(ui, model, view));
+    let (clicked, toggled) = drawn.inner;
+    if let Some(name) = toggled
+        && !view.hidden.remove(&name)
+    {
+        view.hidden.insert(name);
+    }
+    if model.playhead.is_some() {
+        request = request.or(clicked.map(Request::GoTo));
+    }
+    (request, drawn.response.rect)
+}
+
+/// Draws the plot and its legend. Returns the time that is clicked, and the curve that is clicked in the legend.
+fn draw(ui: &mut Ui, model: &Model, view: &PlotView) -> (Option<f64>, Option<String>) {
+    let curves: Vec<_> = model
+        .curves
+        .into_iter()
+        .flat_map(|curves| chosen(curves, view))
+        .take(MOST_CURVES)
+        .collect();
+    let time = AxisHints::new_x()
+        .label("s")
+        .label_spacing(Rangef::point(NUMBERS_X));
+    let value = AxisHints::new_y()
+        .label(view.quantity.unit())
+        .label_spacing(Rangef::point(NUMBERS_Y));
+    let mut plot = Plot::new("plot")
         .height(HEIGHT)
-        .legend(Legend::default())
-        .x_axis_label("s")
-        .y_axis_label(view.quantity.unit())
+        .custom_x_axes(vec![time])
+        .custom_y_axes(vec![value])
         .auto_bounds(Vec2b::TRUE)
         .allow_scroll(false);
+    // A range of one time or value alone has no size, and egui shows another one.
+    if let Some(time) = only_number(&curves, 0) {
+        plot = plot.include_x(time - 0.5).include_x(time + 0.5);
+    }
+    if let Some(value) = only_number(&curves, 1) {
+        plot = plot.include_y(value - 0.5).include_y(value + 0.5);
+    }
+    let playhead = ui.visuals().strong_text_color();
     let shown = plot.show(ui, |plot| {
-        let curves = model
-            .curves
-            .into_iter()
-            .flat_map(|curves| chosen(curves, view));
-        for (name, points) in curves.take(MOST_CURVES) {
-            plot.line(Line::new(name, PlotPoints::from(points.to_vec())));
+        for (number, (name, points)) in curves.iter().enumerate() {
+            if view.hidden.contains(*name) {
+                continue;
+            }
+            let (color, series) = (legend::color(number), PlotPoints::from(points.to_vec()));
+            match points {
+                [_] => plot.points(Points::new(*name, series).color(color).radius(POINT)),
+                _ => plot.line(Line::new(*name, series).color(color)),
+            }
         }
-        if let Some(playhead) = model.playhead {
-            plot.vline(VLine::new("", playhead).color(PLAYHEAD));
+        if let Some(seconds) = model.playhead {
+            plot.vline(VLine::new("", seconds).color(playhead));
         }
         plot.response()
             .clicked()
@@ -250,10 +296,17 @@ fn show(ui: &mut Ui, model: &Model, view: &mut PlotView) -> (Option<Request>, Re
     shown
         .response
         .widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, "Plot"));
-    if model.playhead.is_some() {
-        request = request.or(shown.inner.map(|point| Request::GoTo(point.x)));
-    }
-    (request, shown.response.rect)
+    let names: Vec<_> = curves.iter().map(|(name, _)| *name).collect();
+    let toggled = legend::show(ui, &names, &view.hidden);
+    (shown.inner.map(|point| point.x), toggled)
+}
+
+/// The time, or value, of all points, if they have the same.
+fn only_number(curves: &[(&str, &[[f64; 2]])], side: usize) -> Option<f64> {
+    let points = curves.iter().flat_map(|(_, points)| *points);
+    let mut numbers = points.map(|point| point[side]);
+    let first = numbers.next()?;
+    numbers.all(|number| number == first).then_some(first)
 }
 
 /// The lists of quantities and objects.
@@ -294,6 +347,7 @@ fn choices(ui: &mut Ui, model: &Model, view: &mut PlotView) {
 
 #[cfg(test)]
 mod tests {
+    use bevy_egui::egui::{Color32, Shape, Theme, epaint::ColorMode};
     use egui_kittest::{Harness, kittest::Queryable as _};
 
     use super::*;
@@ -302,6 +356,7 @@ mod tests {
         curves: Curves,
         view: PlotView,
         requests: Vec<Request>,
+        place: Rect,
     }
 
     fn harness() -> Harness<'static, Stage> {
@@ -314,10 +369,18 @@ mod tests {
             }
         }
         curves.add(Quantity::Joints, "left_w0", 0.0, [0.0, 0.5]);
+        showing(curves, Quantity::Places)
+    }
+
+    fn showing(curves: Curves, quantity: Quantity) -> Harness<'static, Stage> {
         let stage = Stage {
             curves,
-            view: PlotView::default(),
+            view: PlotView {
+                quantity,
+                ..PlotView::default()
+            },
             requests: Vec::new(),
+            place: Rect::NOTHING,
         };
         let frame = |ui: &mut Ui, stage: &mut Stage| {
             let model = Model {
@@ -326,12 +389,28 @@ mod tests {
                 has_recording: true,
                 playhead: Some(0.5),
             };
-            let (request, _) = show(ui, &model, &mut stage.view);
+            let (request, place) = show(ui, &model, &mut stage.view);
             stage.requests.extend(request);
+            stage.place = place;
         };
         Harness::builder()
             .with_size([Panel::Plots.width(), 400.0])
             .build_ui_state(frame, stage)
+    }
+
+    /// The colours of lines.
+    fn lines(harness: &Harness<Stage>) -> Vec<Color32> {
+        let shapes = harness.output().shapes.iter();
+        let colors = shapes.filter_map(|clipped| {
+            let Shape::Path(path) = &clipped.shape else {
+                return None;
+            };
+            match path.stroke.color {
+                ColorMode::Solid(color) => Some(color),
+                ColorMode::UV(_) => None,
+            }
+        });
+        colors.collect()
     }
 
     fn click(harness: &mut Harness<Stage>, names: &[&str]) {
@@ -377,5 +456,59 @@ mod tests {
             panic!("{:?}", harness.state().requests);
         };
         assert!((0.2..0.8).contains(&seconds), "{seconds}");
+    }
+
+    #[test]
+    fn the_playhead_is_seen_in_each_theme() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let mut harness = harness();
+            harness.ctx.set_theme(theme);
+            harness.run();
+            let ink = harness.ctx.global_style().visuals.strong_text_color();
+            assert!(lines(&harness).contains(&ink), "{theme:?}");
+        }
+    }
+
+    #[test]
+    fn the_saved_picture_has_the_axes_and_the_whole_legend() {
+        let mut curves = Curves::default();
+        let names: Vec<_> = (0..20).map(|joint| format!("left_w{joint}")).collect();
+        for name in &names {
+            curves.add(Quantity::Joints, name, 0.0, [0.0, 0.5]);
+        }
+        let mut harness = showing(curves, Quantity::Joints);
+        harness.run();
+        let place = harness.state().place;
+        let plot = harness.get_by_label("Plot").rect();
+        assert!(place.left() < plot.left() - 10.0 && plot.bottom() + 10.0 < place.bottom());
+        for name in &names {
+            let shown = harness.get_by_label(name).rect();
+            assert!(place.contains_rect(shown), "{name}: {shown} in {place}");
+        }
+    }
+
+    #[test]
+    fn a_single_sample_and_a_constant_are_seen() {
+        for seconds in [vec![37.0], vec![37.0, 38.0]] {
+            let mut curves = Curves::default();
+            for at in seconds {
+                curves.add(Quantity::Joints, "left_w0", at, [at, 5.0]);
+            }
+            let mut harness = showing(curves, Quantity::Joints);
+            harness.run();
+            let plot = harness.get_by_label("Plot").rect();
+            let is_at_half_height = |y: f32| (y - plot.center().y).abs() < 2.0;
+            let mut shapes = harness.output().shapes.iter();
+            let is_seen = shapes.any(|clipped| {
+                if let Shape::Circle(point) = &clipped.shape {
+                    return is_at_half_height(point.center.y) && point.radius >= 2.0;
+                }
+                let Shape::Path(line) = &clipped.shape else {
+                    return false;
+                };
+                line.points.iter().all(|at| is_at_half_height(at.y))
+            });
+            assert!(is_seen, "{:?}", harness.state().curves);
+        }
     }
 }

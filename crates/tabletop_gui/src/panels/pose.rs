@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{self, DragValue, RichText, Ui, WidgetType},
+    egui::{self, DragValue, RichText, Ui},
 };
 use tabletop_core::{Actor, CommandWriter, HandCommand, Hands, Paused};
 use tabletop_geometry::{Pose, quat_from_degrees};
@@ -13,7 +13,7 @@ use crate::{
     input::regarded::{Regard, Regarded},
     kept::{Kept, keep},
     panels::{Panel, Panels},
-    widgets::{button::switch, name::name},
+    widgets::{button::switch, number::number_field},
 };
 
 /// Steps of numbers for a pixel, in units and degrees.
@@ -173,10 +173,8 @@ fn row(
     ui.label(title);
     let mut is_changed = false;
     for (axis, label) in names.iter().enumerate() {
-        let number = style(DragValue::new(&mut value[axis])).update_while_editing(false);
-        let number = ui.add(number);
-        name(&number, WidgetType::DragValue, label);
-        is_changed |= number.changed();
+        let number = number_field(label, &mut value[axis], &style);
+        is_changed |= ui.add(number).changed();
     }
     ui.end_row();
     is_changed.then_some(value)
@@ -290,6 +288,10 @@ mod tests {
     }
 
     fn typed(name: &str, text: &str, is_movable: bool) -> Option<Request> {
+        typed_until(egui::Key::Enter, name, text, is_movable)
+    }
+
+    fn typed_until(end: egui::Key, name: &str, text: &str, is_movable: bool) -> Option<Request> {
         let mut harness = harness(is_movable);
         harness.get_by_label(name).click();
         harness.run();
@@ -297,7 +299,7 @@ mod tests {
         harness.run();
         harness.event(egui::Event::Text(text.to_owned()));
         harness.run();
-        harness.key_press(egui::Key::Enter);
+        harness.key_press(end);
         harness.run();
         harness.state().request
     }
@@ -314,6 +316,13 @@ mod tests {
             "{degrees}"
         );
         assert_eq!(typed("Location Y", "-4.5", false), None);
+    }
+
+    #[test]
+    fn escape_drops_what_is_typed() {
+        for name in ["Location Y", "Angle X"] {
+            assert_eq!(typed_until(egui::Key::Escape, name, "-4.5", true), None);
+        }
     }
 
     #[test]

@@ -7,8 +7,8 @@ use std::{
 
 use bevy::prelude::*;
 
-/// Puts texts on the clipboard, in the background: the desktop may take its time, and asks for the text whenever it is
-/// pasted.
+/// Reads the clipboard, and puts texts there, in the background: the desktop may take its time, and asks for the text whenever it
+/// is pasted.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Clipboard {
     problem: Arc<Mutex<Option<String>>>,
@@ -20,6 +20,19 @@ impl Clipboard {
         self.copy_by(text, keep_on_clipboard);
     }
 
+    /// The text there, if there is one.
+    pub fn paste(&self) -> Option<String> {
+        let text = arboard::Clipboard::new().and_then(|mut clipboard| clipboard.get_text());
+        match text {
+            Ok(text) => Some(text),
+            Err(arboard::Error::ContentNotAvailable) => None,
+            Err(error) => {
+                self.note(format!("nothing was pasted: {error}"));
+                None
+            }
+        }
+    }
+
     fn copy_by(
         &self,
         text: String,
@@ -28,22 +41,22 @@ impl Clipboard {
         let clipboard = self.clone();
         let work = move || {
             if let Err(problem) = keep(text) {
-                clipboard.note(problem);
+                clipboard.note(format!("nothing was copied: {problem}"));
             }
         };
         let thread = thread::Builder::new().name("clipboard".into());
         if let Err(error) = thread.spawn(work) {
-            self.note(error.to_string());
+            self.note(format!("nothing was copied: {error}"));
         }
     }
 
-    /// The reason why a text could not be put there, reported once.
+    /// The reason why a text could not be put or read there, reported once.
     pub fn take_problem(&self) -> Option<String> {
         self.problem().take()
     }
 
     fn note(&self, problem: String) {
-        *self.problem() = Some(format!("nothing was copied: {problem}"));
+        *self.problem() = Some(problem);
     }
 
     fn problem(&self) -> impl std::ops::DerefMut<Target = Option<String>> {

@@ -1,11 +1,11 @@
 //! A slider for an angle in whole degrees: a knob on a track, a button at either end, and the number.
 
 use bevy_egui::egui::{
-    Button, Color32, CursorIcon, DragValue, Pos2, Rect, Response, RichText, Sense, Stroke, Ui,
-    WidgetInfo, WidgetType, vec2,
+    Button, Color32, CursorIcon, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, WidgetInfo,
+    WidgetType, vec2,
 };
 
-use crate::input::turns::MAX_DEGREES;
+use crate::{input::turns::MAX_DEGREES, widgets::number::number_field};
 
 /// Degrees for a press on the track beside the knob.
 const TRACK_STEP: i32 = 45;
@@ -34,16 +34,11 @@ pub(crate) fn angle_slider(ui: &mut Ui, name: &str, color: Color32, degrees: i32
         if step_button(ui, "⏵", &format!("{name} up by 1°")) {
             changed += BUTTON_STEP;
         }
-        let number = DragValue::new(&mut changed)
-            .range(-MAX_DEGREES..=MAX_DEGREES)
-            .update_while_editing(false)
-            .suffix("°");
-        let number = ui.add_sized(vec2(50.0, HEIGHT), number);
-        number.widget_info(|| {
-            let mut info = WidgetInfo::drag_value(ui.is_enabled(), f64::from(degrees));
-            info.label = Some(format!("{name} in degrees"));
-            info
+        let title = format!("{name} in degrees");
+        let number = number_field(&title, &mut changed, |number| {
+            number.range(-MAX_DEGREES..=MAX_DEGREES).suffix("°")
         });
+        let number = ui.add_sized(vec2(50.0, HEIGHT), number);
         number.on_hover_text("Drag, or click and type");
     });
     changed.clamp(-MAX_DEGREES, MAX_DEGREES)

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use bevy::math::Vec3;
-use bevy_egui::egui::{DragValue, Response, TextEdit, Ui, WidgetInfo, WidgetType};
+use bevy_egui::egui::{TextEdit, Ui, WidgetType};
 use tabletop_core::{
     ObjectEdit, ObjectSpec,
     limits::{MASSES, SPANS},
@@ -11,7 +11,7 @@ use tabletop_core::{
 use tabletop_geometry::{Pose, Rgb};
 
 use super::present_object::PresentObject;
-use crate::widgets::name::name;
+use crate::widgets::{name::name, number::number_field};
 
 /// Width of the names of the properties, in points.
 const NAME_WIDTH: f32 = 66.0;
@@ -219,12 +219,13 @@ fn number(
     range: RangeInclusive<f32>,
     speed: f64,
 ) -> (bool, bool) {
-    let field = DragValue::new(value)
-        .range(range)
-        .speed(speed)
-        .max_decimals(3)
-        .clamp_existing_to_range(false);
-    let field: Response = ui.add(field);
-    field.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, field.enabled(), name));
+    let field = number_field(name, value, |field| {
+        field
+            .range(range)
+            .speed(speed)
+            .max_decimals(3)
+            .clamp_existing_to_range(false)
+    });
+    let field = ui.add(field);
     (field.changed(), field.has_focus() || field.dragged())
 }

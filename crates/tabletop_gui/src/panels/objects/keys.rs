@@ -36,21 +36,10 @@ fn paste(on_table: OnTable, selection: Res<Selection>, mut commands: CommandWrit
     }
 }
 
-/// Removes the chosen object, or else those that are selected in the panel.
-fn delete(
-    chosen: Res<Chosen>,
-    on_table: OnTable,
-    selection: Res<Selection>,
-    mut commands: CommandWriter,
-) {
-    let removed = match chosen.0.and_then(|object| on_table.present(object)) {
-        Some(object) => vec![object.spec],
-        None => selection.objects.selected_of(&on_table.all()),
-    };
-    let edits = removed.into_iter().map(|spec| ObjectEdit::Remove(spec.id));
-    let edits: Vec<_> = edits.collect();
-    if !edits.is_empty() {
-        commands.write(Actor::Key, SceneCommand::Edit(edits));
+fn delete(chosen: Res<Chosen>, on_table: OnTable, mut commands: CommandWriter) {
+    if let Some(object) = chosen.0.and_then(|object| on_table.present(object)) {
+        let removal = ObjectEdit::Remove(object.spec.id);
+        commands.write(Actor::Key, SceneCommand::Edit(vec![removal]));
     }
 }
 
@@ -102,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_choice_what_is_selected_in_the_panel_is_copied_or_deleted() {
+    fn without_a_choice_what_is_selected_in_the_panel_is_copied() {
         let mut test = TestWorld::new(plugin);
         test.block("red", Vec3::Z);
         test.block("blue", Vec3::new(5.0, 0.0, 1.0));
@@ -114,11 +103,5 @@ mod tests {
         let mut ids = ids(&pasted);
         ids.sort_unstable();
         assert_eq!(ids, ["blue", "red"]);
-        let mut removed = strike(&mut test, &[Delete]);
-        removed.sort_by_key(|edit| format!("{edit:?}"));
-        assert_eq!(
-            removed,
-            ["blue", "red"].map(|id| ObjectEdit::Remove(id.into()))
-        );
     }
 }

@@ -52,7 +52,7 @@ impl ObjectList {
         copies(objects, &self.copied)
     }
 
-    pub fn selected_of(&self, objects: &[PresentObject]) -> Vec<ObjectSpec> {
+    fn selected_of(&self, objects: &[PresentObject]) -> Vec<ObjectSpec> {
         let is_selected = |it: &&PresentObject| self.selected.contains(&it.spec.id);
         let selected = objects.iter().filter(is_selected);
         selected.map(|it| it.spec.clone()).collect()

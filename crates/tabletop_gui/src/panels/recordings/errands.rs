@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use bevy_egui::egui::{ComboBox, DragValue, Ui, WidgetInfo, WidgetType};
+use bevy_egui::egui::{ComboBox, Ui, WidgetType};
 use tabletop_user::{Errand, ShelfOrder, ShelvedRecording};
 
 use super::request::Request;
-use crate::widgets::{button::button, name::name};
+use crate::widgets::{button::button, name::name, number::number_field};
 
 /// The formats of datasets, as the command line names them.
 const FORMATS: [&str; 5] = ["lerobot", "robomimic", "rlds", "mcap", "mat"];
@@ -75,8 +75,10 @@ pub(super) fn show(
                 out,
             });
         }
-        let count = ui.add(DragValue::new(&mut fields.count).range(1..=MOST));
-        count.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, true, "Variations"));
+        let count = number_field("Variations", &mut fields.count, |count| {
+            count.range(1..=MOST)
+        });
+        let count = ui.add(count);
         count.on_hover_text("Number of variations");
         ui.separator();
         let out = place(first, "robot");

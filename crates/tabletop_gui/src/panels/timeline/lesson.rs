@@ -66,7 +66,7 @@ fn acting(ui: &mut Ui, model: &Model) -> Option<TaskOrder> {
         ui.weak(model.task.folder.display().to_string());
         order
     };
-    ui.horizontal(row).inner
+    ui.horizontal_wrapped(row).inner
 }
 
 /// The sentences, of which that of the present step stands out.

@@ -336,3 +336,18 @@ fn pictures_are_read_from_their_files_a_few_a_frame() {
     );
     assert!(pictures.texture(&context, &picture(11)).is_none());
 }
+
+#[test]
+fn the_playhead_is_seen_in_each_theme() {
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        let mut harness = harness(Desk::new(TimelineStage::Open));
+        harness.ctx.set_theme(theme);
+        harness.run();
+        let ink = harness.ctx.global_style().visuals.strong_text_color();
+        let mut shapes = harness.output().shapes.iter();
+        let is_seen = shapes.any(|clipped| {
+            matches!(&clipped.shape, egui::Shape::LineSegment { stroke, .. } if stroke.color == ink)
+        });
+        assert!(is_seen, "{theme:?}");
+    }
+}

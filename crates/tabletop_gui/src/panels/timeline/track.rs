@@ -30,7 +30,6 @@ const NARROWEST: f32 = 3.0;
 const MARK: f32 = 4.0;
 
 const SMALL: FontId = FontId::proportional(10.0);
-const PLAYHEAD: Color32 = Color32::from_rgb(255, 255, 255);
 
 pub(super) fn color(color: Rgb) -> Color32 {
     let [red, green, blue] = color.to_bytes();
@@ -191,8 +190,9 @@ fn paint_playhead(ui: &Ui, model: &Model, axis: TimeAxis, rect: Rect) {
         painter.vline(axis.x_of(goal), rect.y_range(), Stroke::new(1.0, ink));
     }
     let x = axis.x_of(model.playhead());
-    painter.vline(x, rect.y_range(), Stroke::new(1.5, PLAYHEAD));
-    paint_mark(&painter, pos2(x, rect.min.y + MARK), -MARK, PLAYHEAD);
+    let ink = ui.visuals().strong_text_color();
+    painter.vline(x, rect.y_range(), Stroke::new(1.5, ink));
+    paint_mark(&painter, pos2(x, rect.min.y + MARK), -MARK, ink);
 }
 
 /// A triangle that points so far up.

@@ -105,6 +105,26 @@ fn the_robot_is_started_stopped_and_everything_put_back() {
 }
 
 #[test]
+fn nothing_is_wider_than_the_panel() {
+    for width in [640.0, 1000.0, 1260.0] {
+        let mut desk = Desk::new(TimelineStage::Open);
+        desk.task = task();
+        desk.task.folder = ["/home/someone"; 12].concat().into();
+        let show = |ui: &mut Ui, (desk, widths): &mut (Desk, [f32; 2])| {
+            let room = ui.available_width();
+            Desk::show(ui, desk);
+            *widths = [ui.min_rect().width(), room];
+        };
+        let mut harness = Harness::builder()
+            .with_size(vec2(width, 760.0))
+            .build_ui_state(show, (desk, [0.0; 2]));
+        harness.run();
+        let (_, [shown, room]) = *harness.state();
+        assert!(shown <= room, "{shown} in {room}");
+    }
+}
+
+#[test]
 fn each_property_of_each_object_can_be_required_or_not() {
     let mut harness = taught(TimelineStage::Open);
     assert!(harness.query_by_label("Red: color red").is_none());
