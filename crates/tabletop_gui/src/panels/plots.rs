@@ -31,7 +31,7 @@ const MOST_CURVES: usize = 60;
 
 /// The least distances of numbers along the axes, in points. Least and best ones that differ would make numbers pale.
 const NUMBERS_X: f32 = 40.0;
-const NUMBERS_Y: f32 = 20.0;
+const NUMBERS_Y: f32 = 16.0;
 
 /// The radius of a curve that is a single point, in points.
 const POINT: f32 = 3.0;

@@ -63,10 +63,11 @@ fn acting(ui: &mut Ui, model: &Model) -> Option<TaskOrder> {
         if button(ui, !is_on, "Put everything back", back).clicked() {
             order = Some(TaskOrder::PutBack);
         }
-        ui.weak(model.task.folder.display().to_string());
         order
     };
-    ui.horizontal_wrapped(row).inner
+    let order = ui.horizontal_wrapped(row).inner;
+    ui.weak(model.task.folder.display().to_string());
+    order
 }
 
 /// The sentences, of which that of the present step stands out.
