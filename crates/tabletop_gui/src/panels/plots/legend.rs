@@ -19,8 +19,6 @@ pub(super) fn color(number: usize) -> Color32 {
 pub(super) fn show(ui: &mut Ui, names: &[&str], hidden: &BTreeSet<String>) -> Option<String> {
     let entries = |ui: &mut Ui| {
         let mut clicked = None;
-        // Rows as high as their texts.
-        ui.spacing_mut().interact_size.y = 0.0;
         for (number, &name) in names.iter().enumerate() {
             if entry(ui, name, color(number), !hidden.contains(name)).clicked() {
                 clicked = Some(name.to_owned());
