@@ -339,8 +339,7 @@ impl Multiplication {
         attempt: u64,
         folder: &Path,
     ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
-        let view = self.variation.in_view;
-        let view = view.then(|| StillScene::of(&beginning).camera);
+        let view = self.variation.in_view.then(|| beginning.camera());
         let VariedBeginning {
             scene,
             binding,

@@ -20,6 +20,7 @@ pub(crate) mod plane;
 pub(crate) mod pointer;
 pub(crate) mod recording_keys;
 pub(crate) mod regarded;
+mod repeats;
 pub(crate) mod robot_keys;
 pub(crate) mod script_control;
 pub(crate) mod snapshot;

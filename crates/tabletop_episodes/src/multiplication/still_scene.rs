@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use bevy::math::{BVec3, Vec3};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{HeadCamera, ObjectSpec, Picture, Shape};
+use tabletop_core::{ObjectSpec, Picture, Shape};
 use tabletop_geometry::Pose;
 use tabletop_task::{Binding, PlaceRange, Reference, Task, TaskStep};
 
@@ -25,17 +25,12 @@ impl StillScene {
     /// The scene of a beginning.
     pub fn of(beginning: &VariedBeginning) -> Self {
         let table = &beginning.scene.table;
-        let head = HeadCamera {
-            mount: beginning.mount,
-            light: beginning.light,
-            ..HeadCamera::default()
-        };
         let objects = beginning.objects.clone();
         let first = objects
             .iter()
             .map(|object| (object.id.clone(), object.pose));
         Self {
-            camera: Camera::of_head(&head, table),
+            camera: beginning.camera(),
             table: DrawnSolid::of_table(table, 1),
             first: first.collect(),
             objects,

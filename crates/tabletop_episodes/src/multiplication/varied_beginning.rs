@@ -1,6 +1,7 @@
 //! Beginnings of demonstrations that are made from another.
 
-use tabletop_core::{Light, ObjectSpec, SceneSpec};
+use tabletop_camera::Camera;
+use tabletop_core::{HeadCamera, Light, ObjectSpec, SceneSpec};
 use tabletop_geometry::Pose;
 use tabletop_task::Binding;
 
@@ -19,4 +20,16 @@ pub struct VariedBeginning {
     pub light: Light,
     /// The seed of the robot's search for paths.
     pub(super) seed: u64,
+}
+
+impl VariedBeginning {
+    /// The head camera.
+    pub fn camera(&self) -> Camera {
+        let head = HeadCamera {
+            mount: self.mount,
+            light: self.light,
+            ..HeadCamera::default()
+        };
+        Camera::of_head(&head, &self.scene.table)
+    }
 }

@@ -10,6 +10,7 @@ use tabletop_user::{Action, Chosen, Dragging, KeySystems, Keys, UserCamera, was_
 
 use crate::input::{
     around::Around,
+    repeats::Repeats,
     travel::{self, Travel},
     turns::{AXES, TurnSums},
 };
@@ -21,12 +22,6 @@ const TURN_STEP: i32 = 1;
 /// Greatest speed while a key stays down, in units/s and degrees/s.
 const SPEED: f32 = 3.0;
 const TURN_SPEED: f32 = 60.0;
-
-/// The time after which a key that stays down repeats its step.
-const DELAY: Duration = Duration::from_millis(300);
-
-/// The most steps in a frame, so that a slow one does not throw things.
-const MOST_STEPS: u32 = 6;
 
 /// The keys that move, along the axes of the viewer: to the right, away, up.
 const MOVES: [[Action; 2]; 3] = [
@@ -227,80 +222,6 @@ fn turn(
             let degrees = steps * step * along.dot(direction).round() as i32;
             commands.write_batch(Actor::Key, turns.turn_by(hand, axis, degrees));
         }
-    }
-}
-
-/// The repeats of keys that stay down, and of what a gamepad pushes.
-#[derive(Default)]
-struct Repeats {
-    /// The time of the next one.
-    next: Duration,
-    /// The time of the last frame.
-    last: Duration,
-    /// The parts of steps that a gamepad has pushed.
-    pushed: [f32; 3],
-}
-
-impl Repeats {
-    /// The steps in this frame along each axis.
-    fn steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
-        let pushed = self.pushed_steps(keys, actions, every, now);
-        let struck = self.struck_steps(keys, actions, every, now);
-        std::array::from_fn(|axis| pushed[axis] + struck[axis])
-    }
-
-    /// The steps of sticks and triggers, which move the faster the farther they are pushed.
-    fn pushed_steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
-        let passed = now.saturating_sub(self.last).div_duration_f32(every);
-        let passed = passed.min(MOST_STEPS as f32);
-        self.last = now;
-        std::array::from_fn(|axis| {
-            let [plus, minus] = actions[axis];
-            let pushed = match keys.push(plus, minus) {
-                0.0 => 0.0,
-                push => self.pushed[axis] + push * passed,
-            };
-            self.pushed[axis] = pushed.fract();
-            pushed.trunc() as i32
-        })
-    }
-
-    fn struck_steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
-        let struck = actions.map(|[plus, minus]| {
-            i32::from(keys.was_struck(plus)) - i32::from(keys.was_struck(minus))
-        });
-        if struck != [0; 3] {
-            self.next = now + DELAY;
-            return struck;
-        }
-        let held = actions.map(|[plus, minus]| keys.axis(plus, minus) as i32);
-        let mut steps = 0;
-        while held != [0; 3] && self.next <= now && steps < MOST_STEPS {
-            self.next += every;
-            steps += 1;
-        }
-        if self.next <= now {
-            self.next = now + every;
-        }
-        held.map(|way| way * steps as i32)
     }
 }
 

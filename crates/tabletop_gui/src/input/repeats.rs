@@ -1,0 +1,85 @@
+//! Steps of keys that stay down, and of what a gamepad pushes.
+
+use std::time::Duration;
+
+use tabletop_user::{Action, Keys};
+
+/// The time after which a key that stays down repeats its step.
+const DELAY: Duration = Duration::from_millis(300);
+
+/// The most steps in a frame, so that a slow one does not throw things.
+const MOST_STEPS: u32 = 6;
+
+/// The repeats of keys that stay down, and of what a gamepad pushes.
+#[derive(Default)]
+pub(super) struct Repeats {
+    /// The time of the next one.
+    next: Duration,
+    /// The time of the last frame.
+    last: Duration,
+    /// The parts of steps that a gamepad has pushed.
+    pushed: [f32; 3],
+}
+
+impl Repeats {
+    /// The steps in this frame along each axis.
+    pub(super) fn steps(
+        &mut self,
+        keys: &Keys,
+        actions: &[[Action; 2]; 3],
+        every: Duration,
+        now: Duration,
+    ) -> [i32; 3] {
+        let pushed = self.pushed_steps(keys, actions, every, now);
+        let struck = self.struck_steps(keys, actions, every, now);
+        std::array::from_fn(|axis| pushed[axis] + struck[axis])
+    }
+
+    /// The steps of sticks and triggers, which move the faster the farther they are pushed.
+    fn pushed_steps(
+        &mut self,
+        keys: &Keys,
+        actions: &[[Action; 2]; 3],
+        every: Duration,
+        now: Duration,
+    ) -> [i32; 3] {
+        let passed = now.saturating_sub(self.last).div_duration_f32(every);
+        let passed = passed.min(MOST_STEPS as f32);
+        self.last = now;
+        std::array::from_fn(|axis| {
+            let [plus, minus] = actions[axis];
+            let pushed = match keys.push(plus, minus) {
+                0.0 => 0.0,
+                push => self.pushed[axis] + push * passed,
+            };
+            self.pushed[axis] = pushed.fract();
+            pushed.trunc() as i32
+        })
+    }
+
+    fn struck_steps(
+        &mut self,
+        keys: &Keys,
+        actions: &[[Action; 2]; 3],
+        every: Duration,
+        now: Duration,
+    ) -> [i32; 3] {
+        let struck = actions.map(|[plus, minus]| {
+            i32::from(keys.was_struck(plus)) - i32::from(keys.was_struck(minus))
+        });
+        if struck != [0; 3] {
+            self.next = now + DELAY;
+            return struck;
+        }
+        let held = actions.map(|[plus, minus]| keys.axis(plus, minus) as i32);
+        let mut steps = 0;
+        while held != [0; 3] && self.next <= now && steps < MOST_STEPS {
+            self.next += every;
+            steps += 1;
+        }
+        if self.next <= now {
+            self.next = now + every;
+        }
+        held.map(|way| way * steps as i32)
+    }
+}
