@@ -79,11 +79,12 @@ impl UNet {
         self.down.iter().chain(&self.up).chain(ends)
     }
 
-    /// Random parameters to begin with.
+    /// Random parameters to begin with. The last convolutions begin with zeros: all places are equally likely. Where they begin with random ones, the first
+    /// steps undo confident guesses, after which most units are zero everywhere and learn no more.
     pub fn drawn(&self, seed: u64) -> Vec<f32> {
         let random = &mut Random::new(seed);
         let mut parameters = vec![0.0; self.parameters];
-        for convolution in self.convolutions() {
+        for convolution in self.down.iter().chain(&self.up) {
             convolution.draw(&mut parameters, random);
         }
         parameters
@@ -184,6 +185,26 @@ mod tests {
         }
     }
 
+    fn drawn_everywhere(net: &UNet) -> Vec<f32> {
+        let mut parameters = net.drawn(2);
+        for end in [&net.head, &net.whole] {
+            end.draw(&mut parameters, &mut Random::new(3));
+        }
+        parameters
+    }
+
+    #[test]
+    fn it_begins_without_a_guess() {
+        let net = UNet::new(5, LabelPlanes { levels: 3 }.planes());
+        let mut input = Planes::new(5, 64, 32);
+        input.numbers_mut().fill(0.5);
+        input.clear_borders();
+        let response = net.forward(&net.drawn(2), input);
+        assert!(response.planes.pixels(0).all(|heat| heat == 0.0));
+        assert_eq!(response.whole, 0.0);
+        assert!(response.up[3][1].pixels(0).any(|number| number > 0.0));
+    }
+
     #[test]
     fn gradients_are_those_of_finite_differences() {
         let planes = LabelPlanes { levels: 3 };
@@ -196,7 +217,7 @@ mod tests {
         input.clear_borders();
         let (pick, place) = (mark(20.3, 11.8, 0), mark(50.0, 25.5, 2));
         for label in [Label::Move { pick, place }, Label::Done] {
-            let mut parameters = net.drawn(2);
+            let mut parameters = drawn_everywhere(&net);
             let loss = |parameters: &[f32]| {
                 let response = net.forward(parameters, input.clone());
                 let (loss, of_planes, of_whole) = planes.loss(&response, &label);

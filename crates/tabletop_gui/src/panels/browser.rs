@@ -118,21 +118,22 @@ fn show(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
     let chosen = entries(ui, search);
     ui.separator();
     let mut is_entered = ui.memory(|memory| memory.focused().is_none());
+    let enter = ui.input(|input| input.key_pressed(Key::Enter));
     if !is_opening {
         ui.horizontal(|ui| {
             let label = ui.label("File name:");
             let field = TextEdit::singleline(&mut search.name).desired_width(f32::INFINITY);
             let field = ui.add(field).labelled_by(label.id);
             is_entered |= field.lost_focus();
-            if std::mem::take(&mut search.is_new) {
+            let is_unnamed = enter && field.lost_focus() && search.name.trim().is_empty();
+            if std::mem::take(&mut search.is_new) || is_unnamed {
                 field.request_focus();
             }
         });
     }
-    is_entered &= ui.input(|input| input.key_pressed(Key::Enter));
-    let mut answer = (is_entered && !search.name.trim().is_empty()).then(|| search.choose());
+    let is_named = !search.name.trim().is_empty();
+    let mut answer = (enter && is_entered && is_named).then(|| search.choose());
     ui.horizontal(|ui| {
-        let is_named = !search.name.trim().is_empty();
         if button(ui, is_named, verb, title).clicked() {
             answer = Some(search.choose());
         }
@@ -366,6 +367,19 @@ mod tests {
         harness.run();
         let expected = FileRequest::Save(folder.join("new.xml"));
         assert_eq!(harness.state().requests, [expected]);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn without_a_name_enter_leaves_the_keyboard_to_the_name_field() {
+        let folder = folder("unnamed");
+        let mut harness = harness(Purpose::Save, &folder);
+        harness.state_mut().browser.search.as_mut().unwrap().name = " ".into();
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+        assert_eq!(harness.state().requests, []);
+        assert!(harness.get_by_label("File name:").is_focused());
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -17,9 +17,10 @@ use bevy_egui::{
     },
 };
 use tabletop_core::{Actor, CommandWriter, ObjectEdit, Preset, SceneCommand};
-use tabletop_user::{Action, Keymap};
+use tabletop_user::{Action, Chosen, Keymap};
 
 use self::{
+    list::ListRequest,
     present_object::{OnTable, PresentObject},
     selection::Selection,
 };
@@ -65,7 +66,7 @@ enum Request {
     Load(PathBuf),
     Make(Preset),
     Clear,
-    Edit(Vec<ObjectEdit>),
+    List(ListRequest),
     File(FileRequest),
 }
 
@@ -79,6 +80,7 @@ fn show_panel(
     mut panels: ResMut<Panels>,
     mut selection: ResMut<Selection>,
     mut seeds: ResMut<PresetSeeds>,
+    mut chosen: ResMut<Chosen>,
     mut commands: CommandWriter,
     mut file_requests: MessageWriter<FileRequest>,
     files: Res<Files>,
@@ -110,7 +112,10 @@ fn show_panel(
         Some(Request::Clear) => {
             commands.write(Actor::Panel, SceneCommand::Clear);
         }
-        Some(Request::Edit(edits)) => {
+        Some(Request::List(ListRequest::Choose(id))) => {
+            chosen.set_if_neq(Chosen(on_table.entity(&id)));
+        }
+        Some(Request::List(ListRequest::Edit(edits))) => {
             commands.write(Actor::Panel, SceneCommand::Edit(edits));
         }
         Some(Request::File(request)) => {
@@ -126,9 +131,8 @@ fn show(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Request
     ui.separator();
     let files = files(ui, model);
     ui.separator();
-    let edits = list::show(ui, model.objects, &mut selection.objects);
-    let edits = (!edits.is_empty()).then_some(Request::Edit(edits));
-    tasks.or(presets).or(files).or(edits)
+    let list = list::show(ui, model.objects, &mut selection.objects);
+    tasks.or(presets).or(files).or(list.map(Request::List))
 }
 
 fn tasks(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Request> {
@@ -414,7 +418,8 @@ mod tests {
         requests
             .into_iter()
             .flat_map(|request| match request {
-                Request::Edit(edits) => edits,
+                Request::List(ListRequest::Edit(edits)) => edits,
+                Request::List(ListRequest::Choose(_)) => Vec::new(),
                 Request::Load(_) | Request::Make(_) | Request::Clear | Request::File(_) => {
                     panic!("{request:?}")
                 }
@@ -463,6 +468,38 @@ mod tests {
         };
         assert_eq!((&**object, spec.id.contains('s')), ("block", true));
         assert_eq!(spec.pose, harness.state().objects[1].spec.pose);
+    }
+
+    #[test]
+    fn a_renamed_object_stays_selected_also_when_undo_brings_back_its_id() {
+        let mut harness = with_objects();
+        edits(&mut harness, &["block"]);
+        for id in ["s", "t"] {
+            harness.get_by_label("Id").focus();
+            harness.run();
+            harness.get_by_label("Id").type_text(id);
+            harness.key_press(bevy_egui::egui::Key::Enter);
+            harness.run();
+            let changed = edits(&mut harness, &[]);
+            let [ObjectEdit::Change { spec, .. }] = &changed[..] else {
+                panic!("{changed:?}");
+            };
+            harness.run();
+            let before = harness.state().objects.clone();
+            harness.state_mut().objects[1].spec = (**spec).clone();
+            harness.run();
+            assert!(harness.query_by_label("Id").is_some(), "renamed");
+            harness.state_mut().objects = before;
+            harness.run();
+            assert!(harness.query_by_label("Id").is_some(), "undone");
+        }
+    }
+
+    #[test]
+    fn what_is_selected_in_the_list_is_chosen_for_the_keyboard() {
+        let mut harness = with_objects();
+        let chosen = Request::List(ListRequest::Choose("block".into()));
+        assert_eq!(clicked(&mut harness, &["block"]), [chosen]);
     }
 
     #[test]

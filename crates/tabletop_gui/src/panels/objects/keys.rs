@@ -20,12 +20,12 @@ pub(super) fn plugin(app: &mut App) {
     );
 }
 
-/// Keeps the chosen object, or else those that are selected in the panel.
+/// Keeps the chosen object, unless it is one of those that are selected in the panel: then these, as without a choice.
 fn copy(chosen: Res<Chosen>, on_table: OnTable, mut selection: ResMut<Selection>) {
     let list = &mut selection.objects;
     match chosen.0.and_then(|object| on_table.present(object)) {
-        Some(object) => list.copy(vec![object.spec]),
-        None => list.copy_selected(&on_table.all()),
+        Some(object) if !list.has(&object.spec.id) => list.copy(vec![object.spec]),
+        Some(_) | None => list.copy_selected(&on_table.all()),
     }
 }
 
@@ -36,10 +36,23 @@ fn paste(on_table: OnTable, selection: Res<Selection>, mut commands: CommandWrit
     }
 }
 
-fn delete(chosen: Res<Chosen>, on_table: OnTable, mut commands: CommandWriter) {
-    if let Some(object) = chosen.0.and_then(|object| on_table.present(object)) {
-        let removal = ObjectEdit::Remove(object.spec.id);
-        commands.write(Actor::Key, SceneCommand::Edit(vec![removal]));
+/// Takes the chosen object from the table, with all that are selected in the panel if it is one of them.
+fn delete(
+    chosen: Res<Chosen>,
+    on_table: OnTable,
+    selection: Res<Selection>,
+    mut commands: CommandWriter,
+) {
+    let Some(object) = chosen.0.and_then(|object| on_table.present(object)) else {
+        return;
+    };
+    let id = object.spec.id;
+    let edits = match selection.objects.has(&id) {
+        true => selection.objects.removed(&on_table.all()),
+        false => vec![ObjectEdit::Remove(id)],
+    };
+    if !edits.is_empty() {
+        commands.write(Actor::Key, SceneCommand::Edit(edits));
     }
 }
 
@@ -87,6 +100,20 @@ mod tests {
         let pasted = strike(&mut test, &[ControlLeft, KeyV]);
         assert_eq!(ids(&pasted), ["red"]);
         let removed = [ObjectEdit::Remove("red".into())];
+        assert_eq!(strike(&mut test, &[Delete]), removed);
+    }
+
+    #[test]
+    fn a_chosen_object_is_deleted_and_copied_with_those_that_are_selected_with_it() {
+        let mut test = TestWorld::new(plugin);
+        let blue = test.block("blue", Vec3::new(5.0, 0.0, 1.0));
+        test.block("red", Vec3::Z);
+        test.app.insert_resource(Chosen(Some(blue)));
+        let mut selection = test.app.world_mut().resource_mut::<Selection>();
+        selection.objects.select_for_move(&["red", "blue"], [0.0; 3]);
+        strike(&mut test, &[ControlLeft, KeyC]);
+        assert_eq!(ids(&strike(&mut test, &[ControlLeft, KeyV])), ["blue", "red"]);
+        let removed = ["blue", "red"].map(|id| ObjectEdit::Remove(id.into()));
         assert_eq!(strike(&mut test, &[Delete]), removed);
     }
 

@@ -29,22 +29,44 @@ const PLACES: usize = 40;
 /// The selected objects, and what the user does with them.
 #[derive(Default)]
 pub(super) struct ObjectList {
-    /// Their ids, in the order in which they were selected.
+    /// Their ids, in the order in which they were selected. Undo can bring back the object of an id that is not on the table.
     selected: Vec<String>,
     copied: Vec<ObjectSpec>,
     edited: Option<EditedObject>,
     offset: [f32; 3],
 }
 
+/// A wish of the user for the list.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum ListRequest {
+    /// Choose the object of this id for the keyboard.
+    Choose(String),
+    Edit(Vec<ObjectEdit>),
+}
+
 impl ObjectList {
+    /// True if the object of this id is selected.
+    pub fn has(&self, id: &str) -> bool {
+        self.selected.iter().any(|it| it == id)
+    }
+
     /// Keeps objects for pasting.
     pub fn copy(&mut self, specs: Vec<ObjectSpec>) {
         self.copied = specs;
     }
 
+    /// The edits that take the selected objects from the table, unless one of them is held.
+    pub fn removed(&self, objects: &[PresentObject]) -> Vec<ObjectEdit> {
+        let selected = self.selected_of(objects);
+        match selected.iter().all(|it| it.holder.is_none()) {
+            true => selected.iter().map(|it| ObjectEdit::Remove(it.spec.id.clone())).collect(),
+            false => Vec::new(),
+        }
+    }
+
     /// Keeps the selected objects for pasting.
     pub fn copy_selected(&mut self, objects: &[PresentObject]) {
-        self.copy(self.selected_of(objects));
+        self.copy(self.selected_specs(objects));
     }
 
     /// The edits that put the copied objects on the table.
@@ -52,10 +74,14 @@ impl ObjectList {
         copies(objects, &self.copied)
     }
 
-    fn selected_of(&self, objects: &[PresentObject]) -> Vec<ObjectSpec> {
-        let is_selected = |it: &&PresentObject| self.selected.contains(&it.spec.id);
-        let selected = objects.iter().filter(is_selected);
+    fn selected_specs(&self, objects: &[PresentObject]) -> Vec<ObjectSpec> {
+        let selected = self.selected_of(objects).into_iter();
         selected.map(|it| it.spec.clone()).collect()
+    }
+
+    fn selected_of<'a>(&self, objects: &'a [PresentObject]) -> Vec<&'a PresentObject> {
+        let is_selected = |it: &&PresentObject| self.selected.contains(&it.spec.id);
+        objects.iter().filter(is_selected).collect()
     }
 }
 
@@ -68,14 +94,13 @@ impl ObjectList {
     }
 }
 
-/// Shows the list, and returns the edits of the user.
+/// Shows the list.
 pub(super) fn show(
     ui: &mut Ui,
     objects: &[PresentObject],
     list: &mut ObjectList,
-) -> Vec<ObjectEdit> {
-    list.selected
-        .retain(|id| objects.iter().any(|it| it.spec.id == *id));
+) -> Option<ListRequest> {
+    let mut chosen = None;
     let mut edits = Vec::new();
     ui.horizontal(|ui| {
         let count = match objects.len() {
@@ -92,7 +117,9 @@ pub(super) fn show(
         .auto_shrink([false, true])
         .show_rows(ui, height, objects.len(), |ui, seen| {
             for object in &objects[seen] {
-                row(ui, height, object, &mut list.selected);
+                if row(ui, height, object, &mut list.selected) {
+                    chosen = Some(ListRequest::Choose(object.spec.id.clone()));
+                }
             }
         });
     edits.extend(tools(ui, objects, list));
@@ -102,18 +129,20 @@ pub(super) fn show(
         [] => {}
         [one] => {
             if let Some(edit) = inspector::show(ui, one, &mut list.edited) {
-                if let ObjectEdit::Change { spec, .. } = &edit {
-                    list.selected = vec![spec.id.clone()];
+                if let ObjectEdit::Change { object, spec } = &edit {
+                    // Undo may bring back the earlier id.
+                    list.selected = vec![object.clone(), spec.id.clone()];
                 }
                 edits.push(edit);
             }
         }
         _ => edits.extend(move_together(ui, &selected, &mut list.offset)),
     }
-    edits
+    chosen.or((!edits.is_empty()).then_some(ListRequest::Edit(edits)))
 }
 
-fn row(ui: &mut Ui, height: f32, object: &PresentObject, selected: &mut Vec<String>) {
+/// The row of an object. Returns whether the user has selected it.
+fn row(ui: &mut Ui, height: f32, object: &PresentObject, selected: &mut Vec<String>) -> bool {
     let id = &object.spec.id;
     let is_selected = selected.contains(id);
     let size = vec2(ui.available_width(), height);
@@ -146,31 +175,31 @@ fn row(ui: &mut Ui, height: f32, object: &PresentObject, selected: &mut Vec<Stri
         painter.galley(at - vec2(0.0, size.y / 2.0), text, ink);
         at.x += size.x + 8.0;
     }
-    if response.clicked() {
-        let adds = ui.input(|input| input.modifiers.command);
-        match adds {
-            true => selected.retain(|it| it != id),
-            false => selected.clear(),
-        }
-        if !(adds && is_selected) {
-            selected.push(id.clone());
-        }
+    if !response.clicked() {
+        return false;
     }
+    let adds = ui.input(|input| input.modifiers.command);
+    match adds {
+        true => selected.retain(|it| it != id),
+        false => selected.clear(),
+    }
+    let is_added = !(adds && is_selected);
+    if is_added {
+        selected.push(id.clone());
+    }
+    is_added
 }
 
 /// The buttons that copy and remove.
 fn tools(ui: &mut Ui, objects: &[PresentObject], list: &mut ObjectList) -> Vec<ObjectEdit> {
-    let selected: Vec<_> = objects
-        .iter()
-        .filter(|it| list.selected.contains(&it.spec.id))
-        .collect();
+    let selected = list.selected_of(objects);
     let has_some = !selected.is_empty();
     let are_free = has_some && selected.iter().all(|it| it.holder.is_none());
     let mut edits = Vec::new();
     ui.horizontal(|ui| {
         let duplicate = "Puts the same objects again beside them";
         if button(ui, has_some, "Duplicate", duplicate).clicked() {
-            edits = copies(objects, &list.selected_of(objects));
+            edits = copies(objects, &list.selected_specs(objects));
         }
         if button(ui, has_some, "Copy", "Keeps these objects for Paste").clicked() {
             list.copy_selected(objects);
@@ -181,8 +210,7 @@ fn tools(ui: &mut Ui, objects: &[PresentObject], list: &mut ObjectList) -> Vec<O
         }
         let delete = "Takes these objects from the table; Undo brings them back";
         if button(ui, are_free, "Delete", delete).clicked() {
-            let ids = selected.iter().map(|it| it.spec.id.clone());
-            edits = ids.map(ObjectEdit::Remove).collect();
+            edits = list.removed(objects);
         }
         if button(ui, !objects.is_empty(), "All", "Selects all objects").clicked() {
             list.selected = objects.iter().map(|it| it.spec.id.clone()).collect();

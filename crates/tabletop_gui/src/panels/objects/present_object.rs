@@ -37,6 +37,11 @@ impl OnTable<'_, '_> {
             .collect()
     }
 
+    /// The object of this id.
+    pub fn entity(&self, id: &str) -> Option<Entity> {
+        self.index.get(id)
+    }
+
     /// One of them.
     pub fn present(&self, object: Entity) -> Option<PresentObject> {
         let (spec, place, held) = self.objects.get(object).ok()?;
