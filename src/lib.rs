@@ -59,7 +59,7 @@ pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_drive as drive;
 pub use tabletop_environment as environment;
 pub use tabletop_episodes::{
-    Collection, CollectionError, imitation, multiplication, robot_body, run_episodes,
+    Collection, CollectionError, StillScene, imitation, multiplication, robot_body, run_episodes,
     scene_at_beginning, shown_task, soak, watching,
 };
 pub use tabletop_export as export;

@@ -30,10 +30,11 @@ use crate::{
 };
 use bevy::prelude::*;
 use clap::Args;
+use tabletop_camera::Camera;
 use tabletop_controller::{RobotController, Sight};
 use tabletop_core::{
-    HeadCamera, ObjectSpec, RecordingCommand, RobotCommand, RobotLayout, SceneCommand, SceneSpec,
-    SimTick, StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
+    CameraCarrier, HeadCamera, ObjectSpec, RecordingCommand, RobotCommand, RobotLayout,
+    SceneCommand, SceneSpec, SimTick, StepApp as _, TICKS_PER_SECOND, Table, WriteCommand as _,
 };
 
 use super::{
@@ -240,11 +241,37 @@ struct Attempt<'a> {
 }
 
 impl Attempt<'_> {
+    /// The camera by whose pictures a policy decides.
+    fn camera_of_policy(&self, table: &Table) -> Option<Camera> {
+        let mut head = HeadCamera::default();
+        if let Some([width, height]) = self.policy?.picture_size() {
+            (head.width, head.height) = (width, height);
+        }
+        if let Some(description) = &self.robot.description {
+            head.carrier = CameraCarrier::from(&description.layout);
+        }
+        Some(Camera::of_head(&head, table))
+    }
+
     fn make(&self, is_reported: bool) -> Result<Trial, Failure> {
         let start = Instant::now();
+        let scene = match self.exchanges_colors {
+            true => with_colors_exchanged(self.scene.clone(), self.seed.unwrap_or(0)),
+            false => self.scene.clone(),
+        };
         let scene = match self.seed {
-            Some(seed) => scattered_for(self.task, self.requirements, self.scene, self.body, seed),
-            None => Some(self.scene.clone()),
+            Some(seed) => {
+                let camera = self.camera_of_policy(&scene.table);
+                scattered_for(
+                    self.task,
+                    self.requirements,
+                    &scene,
+                    self.body,
+                    camera,
+                    seed,
+                )
+            }
+            None => Some(scene),
         };
         let Some(scene) = scene else {
             return Ok(Trial {
@@ -254,10 +281,6 @@ impl Attempt<'_> {
                 simulated: 0.0,
                 real: 0.0,
             });
-        };
-        let scene = match self.exchanges_colors {
-            true => with_colors_exchanged(scene, self.seed.unwrap_or(0)),
-            false => scene,
         };
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         let binding = self

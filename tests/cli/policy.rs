@@ -2,6 +2,15 @@
 
 use std::fs;
 
+use tabletop::{
+    StillScene,
+    assembly::{IdAllocator, assemble},
+    camera::Camera,
+    core::HeadCamera,
+    recorder::RecordingReader,
+    scene_at_beginning,
+};
+
 use crate::support::{place, record_shipped, stderr, stdout, tabletop};
 
 #[test]
@@ -39,6 +48,19 @@ fn a_policy_is_learned_goes_on_where_it_was_cut_off_and_moves_the_robot() {
         output.status.code(),
         Some(i32::from(!said.starts_with("Done: ")))
     );
+
+    // Without the policy, this seed puts the red block before the right corner of the picture.
+    let trial = place("policy_trial");
+    let trial = trial.to_str().unwrap();
+    let seed = ["--seed", "9", "--record", trial];
+    tabletop(&[&["imitate", &demo, "--policy", file], &seed[..]].concat());
+    let recording = RecordingReader::open(trial).unwrap();
+    let scene = scene_at_beginning(recording.session()).unwrap();
+    let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+    let camera = Camera::of_head(&HeadCamera::default(), &scene.table);
+    let still = StillScene::new(camera, &scene.table, objects);
+    let red = still.pose("One").unwrap();
+    assert!(still.has_in_view("One", red), "{red:?}");
 
     fs::write(file, &first[..100]).unwrap();
     for command in [

@@ -8,6 +8,7 @@ pub use seeing::{SeeingStage, imitate_seeing};
 
 use bevy::prelude::*;
 use tabletop_assembly::{IdAllocator, assemble};
+use tabletop_camera::Camera;
 use tabletop_controller::{Observer, SeenObject, Sight};
 use tabletop_core::{
     JointKind, Random, RobotCommand, RobotLayout, SceneItem, SceneSpec, StepApp as _,
@@ -18,6 +19,8 @@ use tabletop_planner::{
     LimbOrder, Piece, PlanningStage, RobotBody, Stopped, drives, is_feasible, scatter,
 };
 use tabletop_task::{Arrangement, Requirements, Task};
+
+use crate::still_scene::StillScene;
 
 /// An app whose robot is moved by commands, as scripts move it.
 pub struct AppStage<'a> {
@@ -64,13 +67,14 @@ fn advance(app: &mut App, orders: &[LimbOrder]) {
 /// Number of arrangements that are tried until one allows the task.
 const DRAWS: u64 = 50;
 
-/// A scene with everything at random places within reach of the robot, decided by the seed, in which the task is [feasible](is_feasible). `None` if
-/// there is no room.
+/// A scene with everything at random places within reach of the robot, decided by the seed, in which the task is [feasible](is_feasible). A `camera`
+/// sees all that the task moves, wherever its steps take and put it. `None` if there is no room.
 pub fn scattered_for(
     task: &Task,
     requirements: &Requirements,
     scene: &SceneSpec,
     body: &RobotBody,
+    camera: Option<Camera>,
     seed: u64,
 ) -> Option<SceneSpec> {
     let is_possible = |scene: &SceneSpec| {
@@ -79,6 +83,10 @@ pub fn scattered_for(
         let Ok(binding) = task.bind(requirements, &objects) else {
             return true;
         };
+        let is_seen = camera.is_none_or(|camera| {
+            let scene = StillScene::new(camera, &scene.table, objects.clone());
+            scene.keeps_in_view(task, &binding)
+        });
         let seen = objects.into_iter().map(|spec| {
             let is_fixed = spec.is_fixed();
             let (shape, pose) = (spec.shape, spec.pose);
@@ -94,7 +102,7 @@ pub fn scattered_for(
             objects: seen.collect(),
             ..Sight::default()
         };
-        is_feasible(task, &binding, &sight)
+        is_seen && is_feasible(task, &binding, &sight)
     };
     let seeds = std::iter::once(seed).chain((1..DRAWS).map(|draw| {
         let mixed = seed ^ draw.wrapping_mul(0xd6e8_feb8_6659_fd93);

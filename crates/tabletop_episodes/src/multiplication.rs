@@ -8,12 +8,10 @@ mod lasting;
 mod late;
 mod operated;
 mod performance;
-mod still_scene;
 mod variation;
 mod varied_beginning;
 mod way;
 
-pub use still_scene::StillScene;
 pub use variation::{Variation, with_colors_exchanged};
 pub use varied_beginning::VariedBeginning;
 
@@ -327,7 +325,9 @@ impl Multiplication {
             seed,
         };
         let is_in_view = !self.variation.in_view
-            || StillScene::of(&beginning).keeps_in_view(&self.task, &beginning.binding);
+            || beginning
+                .still_scene()
+                .keeps_in_view(&self.task, &beginning.binding);
         Ok(is_in_view.then_some(beginning).ok_or(Dropped::OutOfView))
     }
 

@@ -3,7 +3,10 @@
 use bevy::math::{Quat, Vec2};
 use tabletop_camera::Rasterizer;
 use tabletop_core::Random;
-use tabletop_episodes::multiplication::{Multiplication, StillScene, VariedBeginning};
+use tabletop_episodes::{
+    StillScene,
+    multiplication::{Multiplication, VariedBeginning},
+};
 use tabletop_geometry::{Pose, turn_about_z};
 use tabletop_task::{Role, Task, TaskStep};
 
@@ -104,7 +107,7 @@ impl<'a> Curriculum<'a> {
     pub(crate) fn begin(&self, number: u64) -> Result<(VariedBeginning, StillScene), PolicyError> {
         for attempt in 0..TRIES {
             if let Ok(beginning) = self.multiplication.beginning(number, attempt)? {
-                let scene = StillScene::of(&beginning);
+                let scene = beginning.still_scene();
                 if scene.keeps_in_view(self.task(), &beginning.binding) {
                     return Ok((beginning, scene));
                 }

@@ -6,7 +6,7 @@ use std::fmt;
 use bevy::math::Quat;
 use tabletop_camera::Rasterizer;
 use tabletop_core::ObjectSpec;
-use tabletop_episodes::multiplication::{StillScene, VariedBeginning};
+use tabletop_episodes::{StillScene, multiplication::VariedBeginning};
 use tabletop_geometry::{Pose, turn_about_z};
 use tabletop_task::{Arrangement, Binding, Symmetry, Task};
 

@@ -16,9 +16,9 @@ use tabletop_task::{
 
 use super::{
     operated::Operated,
-    still_scene::has_in_view,
     way::{CarriedWay, WayPoint},
 };
+use crate::still_scene::has_in_view;
 
 /// Limits on the number of ticks between a release and the next grasp, which is otherwise as demonstrated.
 const PAUSE: (u64, u64) = (15, 60);

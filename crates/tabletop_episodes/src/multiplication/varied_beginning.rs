@@ -5,6 +5,8 @@ use tabletop_core::{HeadCamera, Light, ObjectSpec, SceneSpec};
 use tabletop_geometry::Pose;
 use tabletop_task::Binding;
 
+use crate::still_scene::StillScene;
+
 /// The beginning of a demonstration that is made from another.
 #[derive(Clone, Debug)]
 pub struct VariedBeginning {
@@ -31,5 +33,10 @@ impl VariedBeginning {
             ..HeadCamera::default()
         };
         Camera::of_head(&head, &self.scene.table)
+    }
+
+    /// The objects before the head camera.
+    pub fn still_scene(&self) -> StillScene {
+        StillScene::new(self.camera(), &self.scene.table, self.objects.clone())
     }
 }

@@ -16,7 +16,7 @@ use bevy_egui::{
         ComboBox, Direction, Id, InnerResponse, Layout, Response, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{Actor, CommandWriter, ObjectEdit, Preset, SceneCommand};
+use tabletop_core::{Actor, CommandWriter, Preset, SceneCommand};
 use tabletop_user::{Action, Chosen, Keymap};
 
 use self::{
@@ -268,7 +268,7 @@ mod tests {
 
     use super::*;
     use egui_kittest::{Harness, kittest::Queryable as _};
-    use tabletop_core::{ObjectSpec, Shape};
+    use tabletop_core::{ObjectEdit, ObjectSpec, Shape};
     use tabletop_geometry::{Pose, Rgb};
 
     struct Stage {

@@ -110,9 +110,14 @@ mod tests {
         test.block("red", Vec3::Z);
         test.app.insert_resource(Chosen(Some(blue)));
         let mut selection = test.app.world_mut().resource_mut::<Selection>();
-        selection.objects.select_for_move(&["red", "blue"], [0.0; 3]);
+        selection
+            .objects
+            .select_for_move(&["red", "blue"], [0.0; 3]);
         strike(&mut test, &[ControlLeft, KeyC]);
-        assert_eq!(ids(&strike(&mut test, &[ControlLeft, KeyV])), ["blue", "red"]);
+        assert_eq!(
+            ids(&strike(&mut test, &[ControlLeft, KeyV])),
+            ["blue", "red"]
+        );
         let removed = ["blue", "red"].map(|id| ObjectEdit::Remove(id.into()));
         assert_eq!(strike(&mut test, &[Delete]), removed);
     }

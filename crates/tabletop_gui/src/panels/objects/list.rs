@@ -59,7 +59,10 @@ impl ObjectList {
     pub fn removed(&self, objects: &[PresentObject]) -> Vec<ObjectEdit> {
         let selected = self.selected_of(objects);
         match selected.iter().all(|it| it.holder.is_none()) {
-            true => selected.iter().map(|it| ObjectEdit::Remove(it.spec.id.clone())).collect(),
+            true => selected
+                .iter()
+                .map(|it| ObjectEdit::Remove(it.spec.id.clone()))
+                .collect(),
             false => Vec::new(),
         }
     }

@@ -4,11 +4,9 @@ use std::collections::BTreeMap;
 
 use bevy::math::{BVec3, Vec3};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{ObjectSpec, Picture, Shape};
+use tabletop_core::{ObjectSpec, Picture, Shape, Table};
 use tabletop_geometry::Pose;
 use tabletop_task::{Binding, PlaceRange, Reference, Task, TaskStep};
-
-use super::varied_beginning::VariedBeginning;
 
 /// Objects on a table before the head camera.
 #[derive(Clone, Debug)]
@@ -22,15 +20,13 @@ pub struct StillScene {
 }
 
 impl StillScene {
-    /// The scene of a beginning.
-    pub fn of(beginning: &VariedBeginning) -> Self {
-        let table = &beginning.scene.table;
-        let objects = beginning.objects.clone();
+    /// Objects on a table before a camera.
+    pub fn new(camera: Camera, table: &Table, objects: Vec<ObjectSpec>) -> Self {
         let first = objects
             .iter()
             .map(|object| (object.id.clone(), object.pose));
         Self {
-            camera: beginning.camera(),
+            camera,
             table: DrawnSolid::of_table(table, 1),
             first: first.collect(),
             objects,
@@ -146,7 +142,7 @@ impl StillScene {
 }
 
 /// True if a camera sees all of a shape with this pose, were nothing before it.
-pub(super) fn has_in_view(camera: &Camera, shape: &Shape, pose: Pose) -> bool {
+pub(crate) fn has_in_view(camera: &Camera, shape: &Shape, pose: Pose) -> bool {
     let last = [camera.width, camera.height].map(|side| side as f32 - 1.0);
     let sees = |point: Vec3| {
         let pixel = camera.pixel_of(point);
