@@ -1,19 +1,17 @@
 //! Convolutions, forward and backward.
 //!
-//! Each output number has an accumulator of its own, to which products are added one after the other, in the order of the inputs. The compiler
-//! turns neighbouring accumulators into vectors and fuses nothing, so the bits are those of the plain loop on every processor.
+//! Each output number has an accumulator of its own, to which products are added one after the other, in the order of the inputs. Neighbouring
+//! accumulators are vectors, as wide as the processor has them, and nothing is fused, so the bits are those of the plain loop on every processor.
 
 use std::ops::Range;
 
+use fearless_simd::{Level, Simd, SimdBase, dispatch};
 use tabletop_core::Random;
 
 use crate::planes::Planes;
 
 /// Outputs of a convolution are a multiple of this.
 pub(crate) const BLOCK: usize = 16;
-/// Neighbouring pixels whose outputs are summed at once: with a block of outputs each, they are eight vectors of four, and leave a processor with sixteen
-/// of them room for weights. With three it is half as fast.
-const PIXELS: usize = 2;
 /// Pixels over which a weight's gradient is summed at a time, so that they stay in the nearest cache.
 const CHUNK: usize = 256;
 
@@ -127,9 +125,10 @@ impl Convolution {
     }
 
     fn convolve(&self, packed: &[f32], biases: &[f32], input: &Planes, output: &mut Planes) {
+        let level = Level::new();
         match self.side {
-            1 => convolve::<1>(packed, biases, input, output),
-            _ => convolve::<3>(packed, biases, input, output),
+            1 => dispatch!(level, simd => convolve::<1, _>(simd, packed, biases, input, output)),
+            _ => dispatch!(level, simd => convolve::<3, _>(simd, packed, biases, input, output)),
         }
         output.clear_borders();
     }
@@ -140,14 +139,33 @@ impl Convolution {
             *bias += plane.iter().sum::<f32>();
         }
         let weights = &mut sum[self.weights()];
+        let level = Level::new();
         match self.side {
-            1 => add_gradient::<1>(input, gradient, weights),
-            _ => add_gradient::<3>(input, gradient, weights),
+            1 => dispatch!(level, simd => add_gradient::<1, _>(simd, input, gradient, weights)),
+            _ => dispatch!(level, simd => add_gradient::<3, _>(simd, input, gradient, weights)),
         }
     }
 }
 
-fn convolve<const SIDE: usize>(
+/// Sums as many neighbouring pixels at once as leave a processor with sixteen vectors room for the weights.
+#[inline(always)]
+fn convolve<const SIDE: usize, S: Simd>(
+    simd: S,
+    packed: &[f32],
+    biases: &[f32],
+    input: &Planes,
+    output: &mut Planes,
+) {
+    if S::f32s::N < 8 {
+        convolve_pixels::<SIDE, 2, S>(simd, packed, biases, input, output);
+    } else {
+        convolve_pixels::<SIDE, 3, S>(simd, packed, biases, input, output);
+    }
+}
+
+#[inline(always)]
+fn convolve_pixels<const SIDE: usize, const PIXELS: usize, S: Simd>(
+    simd: S,
     packed: &[f32],
     biases: &[f32],
     input: &Planes,
@@ -156,38 +174,44 @@ fn convolve<const SIDE: usize>(
     let (stride, first, pitch) = (output.stride(), output.first(), output.pitch());
     let corner = (first - 1 - pitch) + (3 - SIDE) / 2 * (pitch + 1);
     let in_block = packed.len() / biases.len() * BLOCK;
-    let blocks = packed.chunks_exact(in_block).zip(biases.as_chunks().0);
+    let blocks = packed
+        .chunks_exact(in_block)
+        .zip(biases.as_chunks::<BLOCK>().0);
     let span = output.span();
     let numbers = output.numbers_mut();
     for pixel in (0..span).step_by(PIXELS) {
         for (block, (weights, biases)) in blocks.clone().enumerate() {
-            let biases: &[f32; BLOCK] = biases;
-            let mut sums = [*biases; PIXELS];
+            let mut sums = [simd.load_array_f32x16(*biases); PIXELS];
             let mut weights = weights.as_chunks::<BLOCK>().0.iter();
             for plane in input.each() {
                 for row in 0..SIDE {
                     let from = corner + pixel + row * pitch;
-                    let taps = plane[from..from + PIXELS + SIDE - 1].array_windows::<PIXELS>();
-                    for (shifted, weights) in taps.zip(&mut weights) {
-                        for (sums, number) in sums.iter_mut().zip(shifted) {
-                            for (sum, weight) in sums.iter_mut().zip(weights) {
-                                *sum += weight * number;
-                            }
+                    let taps = &plane[from..from + PIXELS + SIDE - 1];
+                    for (shifted, weights) in taps.array_windows::<PIXELS>().zip(&mut weights) {
+                        let weights = simd.load_array_ref_f32x16(weights);
+                        for (sum, number) in sums.iter_mut().zip(shifted) {
+                            *sum += weights * *number;
                         }
                     }
                 }
             }
-            let columns: [[f32; PIXELS]; BLOCK] =
-                std::array::from_fn(|output| sums.map(|sums| sums[output]));
-            for (output, column) in columns.iter().enumerate() {
+            let sums = sums.map(|sum| simd.as_array_f32x16(sum));
+            for output in 0..BLOCK {
                 let at = (block * BLOCK + output) * stride + first + pixel;
-                numbers[at..at + PIXELS].copy_from_slice(column);
+                let column: [f32; PIXELS] = std::array::from_fn(|pixel| sums[pixel][output]);
+                numbers[at..at + PIXELS].copy_from_slice(&column);
             }
         }
     }
 }
 
-fn add_gradient<const SIDE: usize>(input: &Planes, gradient: &Planes, sum: &mut [f32]) {
+#[inline(always)]
+fn add_gradient<const SIDE: usize, S: Simd>(
+    simd: S,
+    input: &Planes,
+    gradient: &Planes,
+    sum: &mut [f32],
+) {
     let (first, pitch, span) = (input.first(), input.pitch(), input.span());
     let corner = (first - 1 - pitch) + (3 - SIDE) / 2 * (pitch + 1);
     let terms = input.count() * SIDE * SIDE;
@@ -209,15 +233,14 @@ fn add_gradient<const SIDE: usize>(input: &Planes, gradient: &Planes, sum: &mut 
                 for (row, sums) in (0..SIDE).zip(&mut rows) {
                     let at = corner + from + row * pitch;
                     let taps = plane[at..at + count + SIDE - 1].array_windows::<SIDE>();
-                    let mut now = *sums;
+                    let mut now = sums.map(|sum| simd.load_array_f32x16(sum));
                     for (gradients, taps) in turned.iter().zip(taps) {
-                        for (sums, tap) in now.iter_mut().zip(taps) {
-                            for (sum, gradient) in sums.iter_mut().zip(gradients) {
-                                *sum += tap * gradient;
-                            }
+                        let gradients = simd.load_array_ref_f32x16(gradients);
+                        for (sum, tap) in now.iter_mut().zip(taps) {
+                            *sum += gradients * *tap;
                         }
                     }
-                    *sums = now;
+                    *sums = now.map(|sum| simd.as_array_f32x16(sum));
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Symmetry: the rotations that leave a shape's look unchanged.
 
+mod boxes;
 mod likeness;
 
 use bevy::math::{Quat, Vec3};
@@ -318,6 +319,15 @@ mod tests {
             sides,
             color: Rgb::RED,
         };
+        // As those of `hanoi.xml`: square, of long blocks and short ones.
+        let square_ring = Shape::Composite {
+            parts: vec![
+                part(block(0.6, 1.8, 0.4), Vec3::X * 0.6, Vec3::ZERO),
+                part(block(0.6, 1.8, 0.4), Vec3::X * -0.6, Vec3::ZERO),
+                part(block(0.6, 0.6, 0.4), Vec3::Y * 0.6, Vec3::ZERO),
+                part(block(0.6, 0.6, 0.4), Vec3::Y * -0.6, Vec3::ZERO),
+            ],
+        };
         let smooth_ring = Shape::Ring {
             radius_outer: 1.0,
             radius_inner: 0.5,
@@ -334,6 +344,7 @@ mod tests {
             (block(1.0, 1.0, 2.0), Some(8)),
             (block(1.0, 2.0, 3.0), Some(4)),
             (container, Some(2)),
+            (square_ring, Some(8)),
             (hammer, Some(2)),
             (ring(8), Some(16)),
             (ring(5), Some(10)),

@@ -3,18 +3,26 @@
 use bevy::math::{Quat, Vec3};
 use tabletop_geometry::{Polyhedron, Pose, Primitive, Solid};
 
+use super::boxes::{boxes, fill_the_same};
 use crate::rotation::angle_between;
 
 /// Largest difference, in units, of lengths that look the same.
 pub(super) const SAME_LENGTH: f32 = 0.01;
 
-/// True if every solid lands on one that looks like it.
+/// True if every solid lands on one that looks like it, or all are boxes which, turned, fill the same space.
 pub(super) fn looks_the_same(solids: &[Primitive], centre: Vec3, turn: Quat) -> bool {
     let about = Pose::new(centre - turn * centre, turn);
-    solids.iter().all(|solid| {
+    let lands_on_like = |solid: &Primitive| {
         let turned = about * solid.pose;
         solids.iter().any(|other| is_like(solid, turned, other))
-    })
+    };
+    solids.iter().all(lands_on_like) || {
+        let as_it_was = boxes(solids, Pose::IDENTITY);
+        let turned = boxes(solids, about);
+        as_it_was
+            .zip(turned)
+            .is_some_and(|(boxes, turned)| fill_the_same(&boxes, &turned))
+    }
 }
 
 /// True if a solid at a pose takes the place of another.
