@@ -7,10 +7,12 @@ use tabletop_geometry::Pose;
 use tabletop_task::{Demonstration, Track, angle_between};
 use tabletop_vision::{Eyes, KnownObject, KnownScenery, ObjectPercept, with_guides};
 
-/// The largest displacement, in units, and the largest turn, in rad, of an object between two pictures that is an error of the eyes and no motion: if
-/// its shape is known, and if it was only described by what a picture shows of it.
+/// The largest displacement, in units, and the largest turn, in rad, of an object between two pictures that is an error of the eyes and no motion, besides
+/// what is uncertain: if its shape is known, and if it was only described by what a picture shows of it.
 const STILL: (f32, f32) = (0.02, 0.03);
 const STILL_IF_DESCRIBED: (f32, f32) = (0.1, 0.06);
+/// The number of standard deviations within which a pose is certain.
+const CERTAIN: f32 = 3.0;
 
 /// A watcher of a demonstration: knows the shapes and colours of the objects, and not where they are.
 pub struct Watcher {
@@ -77,8 +79,7 @@ impl Watcher {
                 let mut percept = eyes.look(picture, &KnownScenery::default());
                 let places = self.objects.iter().map(|object| Some(object.spec.pose));
                 eyes.name_by_place(&places.collect::<Vec<_>>(), &mut percept);
-                self.eyes
-                    .remember(percept.objects.iter().map(|seen| seen.pose));
+                self.eyes.remember(eyes.remembered());
                 percept
             }
             None => self.eyes.look(picture, &KnownScenery::default()),
@@ -87,11 +88,16 @@ impl Watcher {
         for (object, seen) in self.objects.iter_mut().zip(percept.objects) {
             if let ObjectPercept {
                 pose: Some(pose),
+                deviation,
                 is_sure: true,
                 ..
             } = seen
             {
-                object.see(tick, pose, self.still);
+                let still = (
+                    self.still.0 + CERTAIN * deviation.location.length(),
+                    self.still.1 + CERTAIN * deviation.yaw,
+                );
+                object.see(tick, pose, still);
             }
         }
     }

@@ -138,7 +138,8 @@ fn settled(track: &Track, motion: &ShownMotion) -> SimTick {
 fn is_carried(shown: &Demonstration, motions: &[ShownMotion], i: usize) -> bool {
     let own = &motions[i];
     let meanwhile = |other: &&ShownMotion| {
-        other.object != own.object && other.from < own.to && own.from < other.to
+        let overlaps = other.from < own.to && own.from < other.to;
+        other.object != own.object && overlaps && !follows(own, other)
     };
     let before = shown.at(SimTick(own.from.0.saturating_sub(1)));
     let below = [before.supports(&own.object), before.containers(&own.object)].concat();
@@ -148,6 +149,11 @@ fn is_carried(shown: &Demonstration, motions: &[ShownMotion], i: usize) -> bool 
         let is_carried_along = below.contains(&other.object.as_str());
         is_pushed || is_carried_along
     })
+}
+
+/// Whether a motion may have begun after another one has ended, in the same frame. It lasts longer than that of something that was pushed.
+fn follows(own: &ShownMotion, other: &ShownMotion) -> bool {
+    own.from.0 + TICKS_PER_FRAME > other.to.0 && own.to.0 > other.to.0 + PAUSE
 }
 
 /// Whether an object stands on something at the end of a tick.

@@ -3,16 +3,16 @@
 mod finding;
 mod guided;
 mod settling;
+mod tracking;
 
 use bevy::math::Vec3;
 use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
     known::{KnownObject, StandingPose},
-    refine::{Refinement, TRACKING},
+    refine::Refinement,
     residual::{OUTLIER, Residual, TriedFit, loss, rows},
     segment::{Blob, NO_COLOR, Palette, blobs},
-    support,
 };
 
 /// The part of what an object should explain that it has to explain at least.
@@ -24,6 +24,8 @@ const SUPPORTED: f32 = 0.05;
 /// The same, when everything else is about in its place.
 const FINALLY_SUPPORTED: f32 = 0.3;
 const STILL_SUPPORTED: f32 = 0.003;
+/// The loss by which another arrangement has to be better at least.
+const BETTER: f64 = 1.0;
 /// The loss of a pixel, on average, above which an object is explained badly, without noise.
 const BAD: f32 = 400.0;
 /// The largest height, in units, on which objects that nothing is known about are looked for.
@@ -43,6 +45,8 @@ pub(crate) struct ObjectArrangement<'a, 'p> {
     /// The placement of each object, if it is known, and the window in which it may be seen.
     pub placements: Vec<Option<StandingPose>>,
     windows: Vec<Option<PictureWindow>>,
+    /// True for what is fixed, and stays where it was in the last picture.
+    is_anchored: Vec<bool>,
     /// The known colour that each pixel shows, and that of each object.
     classes: Vec<u8>,
     colors: Vec<u8>,
@@ -73,6 +77,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             objects,
             placements: vec![None; objects.len()],
             windows: vec![None; objects.len()],
+            is_anchored: vec![false; objects.len()],
             classes,
             colors: colors.collect(),
             squares: vec![0.0; residual.seen().depth.len()],
@@ -196,45 +201,6 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
         self.all_but(|_| false, &self.residual.whole())
     }
 
-    /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere. What was in the air does not stay there, so
-    /// it is looked at closely.
-    fn follow(&mut self, before: &[Option<StandingPose>]) {
-        self.allowance = STILL_SUPPORTED;
-        for (i, placement) in before.iter().enumerate() {
-            self.place(i, *placement);
-        }
-        let good = self.good();
-        // What guides others moves them with it: these come to their place along it before, and after.
-        let (guided, free): (Vec<_>, Vec<_>) =
-            (0..self.objects.len()).partition(|&i| self.objects[i].guide().is_some());
-        for &i in [&guided, &free, &guided].into_iter().flatten() {
-            let fit = self.fit(i);
-            if self.hovers(i) || fit.misfit > good * fit.pixels as f32 {
-                self.settle(i, &TRACKING, true);
-            }
-        }
-        let lost: Vec<_> = (0..self.objects.len())
-            .filter(|&i| self.is_bad(i))
-            .collect();
-        for &i in &lost {
-            self.place(i, None);
-        }
-        if self.placements.contains(&None) {
-            self.arrange(&mut || 1.0);
-        }
-    }
-
-    /// True if an object stands on nothing, and no joint holds it.
-    fn hovers(&self, object: usize) -> bool {
-        let known = &self.objects[object];
-        let others = self.objects.iter().zip(&self.placements).enumerate();
-        let others = others.filter(|(i, _)| *i != object);
-        let others = others.filter_map(|(_, (other, at))| Some((other, at.as_ref()?)));
-        known.guide().is_none()
-            && self.placements[object]
-                .is_some_and(|placement| !support::stands(known, &placement, others))
-    }
-
     /// Finds all objects without a placement, and settles all.
     fn arrange(&mut self, chance: &mut impl FnMut() -> f32) {
         self.find_all(chance);
@@ -285,6 +251,13 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
             || open as f32 > 8.0 + 0.15 * fit.pixels as f32
     }
 
+    /// The objects that are explained badly, and that another place may explain better.
+    fn explained_badly(&mut self) -> Vec<usize> {
+        let free = (0..self.objects.len()).filter(|&i| !self.is_anchored[i]);
+        let free: Vec<_> = free.collect();
+        free.into_iter().filter(|&i| self.is_bad(i)).collect()
+    }
+
     /// True if pixels of one object could show another.
     pub fn share_color(&self, one: usize, other: usize) -> bool {
         self.colors[one] == self.colors[other] && self.colors[one] != NO_COLOR
@@ -326,14 +299,13 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
     pub fn reconsider(&mut self) {
         let mut random = tabletop_core::Random::new(1);
         for attempt in 0..ATTEMPTS {
-            let bad: Vec<_> = (0..self.objects.len())
-                .filter(|&i| self.is_bad(i))
-                .collect();
+            let bad = self.explained_badly();
             if bad.is_empty() {
                 return;
             }
             let before = self.remember();
             let away: Vec<_> = (0..self.objects.len())
+                .filter(|&i| !self.is_anchored[i])
                 .filter(|&i| {
                     bad.iter().any(|&bad| {
                         bad == i
@@ -350,7 +322,7 @@ impl<'a, 'p> ObjectArrangement<'a, 'p> {
                 0 => 1.0,
                 _ => random.between((0.4, 1.0)),
             });
-            if self.loss() >= before.loss - 1.0 {
+            if self.loss() >= before.loss - BETTER {
                 self.restore(&before);
             }
         }

@@ -119,7 +119,7 @@ impl Eyes {
         self.poses.fill(None);
     }
 
-    /// Lets objects be where they are known to have been just before the next picture.
+    /// Lets objects be where they are known to have been just before the next picture. What is fixed is still there.
     pub fn remember(&mut self, poses: impl IntoIterator<Item = Option<Pose>>) {
         for (own, pose) in self.poses.iter_mut().zip(poses) {
             *own = pose;
@@ -202,10 +202,14 @@ impl Eyes {
             arrangement.square(i) > least
         });
         let noise = arrangement.noise.sqrt();
-        self.layers = Some(arrangement.residual.into_layers());
-        for (own, seen) in self.poses.iter_mut().zip(&objects) {
-            *own = seen.pose;
+        for (i, seen) in objects.iter().enumerate() {
+            // What is fixed stays where it was surely seen, as long as that explains the picture.
+            let is_kept = !self.objects[i].is_fixed()
+                || seen.is_sure
+                || before[i].is_some() && !arrangement.is_bad(i);
+            self.poses[i] = seen.pose.filter(|_| is_kept);
         }
+        self.layers = Some(arrangement.residual.into_layers());
         Percept {
             objects,
             clutter,

@@ -27,6 +27,9 @@ impl ObjectArrangement<'_, '_> {
         let Some(before) = self.placements[object] else {
             return 0.0;
         };
+        if self.is_anchored[object] {
+            return 0.0;
+        }
         if self.objects[object].guide().is_some() {
             let Some((settled, _)) = self.along_guide(object) else {
                 return 0.0;

@@ -1,0 +1,135 @@
+//! Tracking: what has moved since the last picture.
+
+use tabletop_camera::PictureWindow;
+
+use super::{BETTER, ObjectArrangement, STILL_SUPPORTED};
+use crate::{known::StandingPose, refine::TRACKING, support};
+
+/// How an object may have moved, alone among the others.
+struct Motion {
+    /// The new placements: its own, and those of what it guides.
+    placements: Vec<(usize, Option<StandingPose>)>,
+    /// The loss that it saves.
+    gain: f64,
+    /// The part of the picture that changes.
+    window: PictureWindow,
+}
+
+impl ObjectArrangement<'_, '_> {
+    /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere. What was in the air does not stay there, so
+    /// it is looked at closely.
+    pub(super) fn follow(&mut self, before: &[Option<StandingPose>]) {
+        self.allowance = STILL_SUPPORTED;
+        for (i, placement) in before.iter().enumerate() {
+            self.place(i, *placement);
+            self.is_anchored[i] = placement.is_some() && self.objects[i].is_fixed();
+        }
+        self.follow_motions();
+        let mut is_sought = vec![false; self.objects.len()];
+        while let Some(lost) = self.most_lost(&is_sought) {
+            is_sought[lost] = true;
+            self.place(lost, None);
+            self.find_all(&mut || 1.0);
+            self.follow_motions();
+        }
+        if self.placements.contains(&None) {
+            self.arrange(&mut || 1.0);
+        }
+    }
+
+    /// The object that is explained worst, of those that are explained badly and have not been sought. What covers it, or has covered it, may be why others are
+    /// explained badly.
+    fn most_lost(&mut self, is_sought: &[bool]) -> Option<usize> {
+        let bad = self.explained_badly().into_iter();
+        let bad: Vec<_> = bad
+            .filter(|&i| !is_sought[i] && self.placements[i].is_some())
+            .collect();
+        let misfits = bad.into_iter().map(|i| {
+            let fit = self.fit(i);
+            match fit.pixels {
+                0 => (i, f32::INFINITY),
+                pixels => (i, fit.misfit / pixels as f32),
+            }
+        });
+        let worst = misfits.max_by(|one, other| one.1.total_cmp(&other.1));
+        worst.map(|(i, _)| i)
+    }
+
+    /// Moves what has moved. An object is explained badly where it was if it has moved, but also if what has moved hid it, or hides it now. So the motion that
+    /// explains most comes first, and whatever that may have explained is looked at again.
+    fn follow_motions(&mut self) {
+        let mut has_moved = vec![false; self.objects.len()];
+        let mut is_known = vec![false; self.objects.len()];
+        let mut motions: Vec<Option<Motion>> = Vec::new();
+        motions.resize_with(self.objects.len(), || None);
+        loop {
+            for i in 0..self.objects.len() {
+                if !is_known[i] {
+                    is_known[i] = true;
+                    motions[i] = match self.may_have_moved(i) {
+                        true => self.motion(i),
+                        false => None,
+                    };
+                    motions[i].take_if(|motion| has_moved[i] && motion.gain < BETTER);
+                }
+            }
+            let gain = |i: &usize| motions[*i].as_ref().map(|motion| motion.gain);
+            let open = (0..self.objects.len()).filter_map(|i| Some((i, gain(&i)?)));
+            let best = open.max_by(|one, other| one.1.total_cmp(&other.1));
+            let Some((object, Some(motion))) = best.map(|(i, _)| (i, motions[i].take())) else {
+                return;
+            };
+            for &(i, placement) in &motion.placements {
+                self.place(i, placement);
+            }
+            has_moved[object] = true;
+            for i in 0..self.objects.len() {
+                let own = motions[i].as_ref().map(|motion| &motion.window);
+                let mut seen = self.windows[i].iter().chain(own);
+                if seen.any(|own| !own.intersection(&motion.window).is_empty()) {
+                    is_known[i] = i == object;
+                }
+            }
+        }
+    }
+
+    /// True if an object is in the air, or explains its pixels badly.
+    fn may_have_moved(&mut self, object: usize) -> bool {
+        if self.is_anchored[object] {
+            return false;
+        }
+        let fit = self.fit(object);
+        self.hovers(object) || fit.misfit > self.good() * fit.pixels as f32
+    }
+
+    /// The motion of an object that explains the picture best. `None` if it is not in the picture.
+    fn motion(&mut self, object: usize) -> Option<Motion> {
+        let before = self.remember();
+        let was_seen = self.windows.clone();
+        self.settle(object, &TRACKING, true);
+        let moved = (0..self.objects.len()).filter(|&i| self.placements[i] != before.placements[i]);
+        let moved: Vec<_> = moved.chain([object]).collect();
+        let windows = moved
+            .iter()
+            .flat_map(|&i| was_seen[i].iter().chain(&self.windows[i]));
+        let window = windows.cloned().reduce(|one, other| one.joined(&other))?;
+        let motion = Motion {
+            placements: moved.iter().map(|&i| (i, self.placements[i])).collect(),
+            gain: before.loss - self.loss(),
+            window,
+        };
+        self.restore(&before);
+        Some(motion)
+    }
+
+    /// True if an object stands on nothing, and no joint holds it.
+    fn hovers(&self, object: usize) -> bool {
+        let known = &self.objects[object];
+        let others = self.objects.iter().zip(&self.placements).enumerate();
+        let others = others.filter(|(i, _)| *i != object);
+        let others = others.filter_map(|(_, (other, at))| Some((other, at.as_ref()?)));
+        known.guide().is_none()
+            && self.placements[object]
+                .is_some_and(|placement| !support::stands(known, &placement, others))
+    }
+}
