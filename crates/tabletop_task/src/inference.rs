@@ -38,10 +38,16 @@ pub(crate) fn inferred_acts(shown: &Demonstration) -> Vec<HandAct> {
         .flat_map(|object| motions(shown, &object.spec.id))
         .collect();
     motions.sort_by_key(|motion| motion.from);
-    let carried: Vec<_> = (0..motions.len())
+    let mut carried: Vec<_> = (0..motions.len())
         .filter(|&i| is_carried(shown, &motions, i))
         .map(|i| motions[i].clone())
         .collect();
+    for i in 0..carried.len() {
+        // A hand has let go of it before it takes what follows.
+        let following = carried.iter().filter(|next| follows(next, &carried[i]));
+        let next = following.map(|next| next.from).min();
+        carried[i].to = next.map_or(carried[i].to, |next| next.min(carried[i].to));
+    }
     let mut acts = Vec::new();
     let mut right_until = None;
     for motion in carried {
@@ -153,7 +159,9 @@ fn is_carried(shown: &Demonstration, motions: &[ShownMotion], i: usize) -> bool 
 
 /// Whether a motion may have begun after another one has ended, in the same frame. It lasts longer than that of something that was pushed.
 fn follows(own: &ShownMotion, other: &ShownMotion) -> bool {
-    own.from.0 + TICKS_PER_FRAME > other.to.0 && own.to.0 > other.to.0 + PAUSE
+    other.from < own.from
+        && own.from.0 + TICKS_PER_FRAME > other.to.0
+        && own.to.0 > other.to.0 + PAUSE
 }
 
 /// Whether an object stands on something at the end of a tick.
@@ -161,4 +169,79 @@ fn stands(shown: &Demonstration, id: &str, tick: SimTick) -> bool {
     let arrangement = shown.at(tick);
     let is_around = || !arrangement.presumed_bases(id).0.is_empty();
     arrangement.is_on_table(id) || !arrangement.supports(id).is_empty() || is_around()
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::Vec3;
+    use tabletop_core::{ObjectSpec, Shape, Table};
+    use tabletop_geometry::Rgb;
+
+    use super::*;
+
+    /// A block that is at these places from these ticks on.
+    fn block(id: &str, places: &[(u64, Vec3)]) -> (ObjectSpec, Track) {
+        let shape = Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::RED,
+        };
+        let mut track = Track::default();
+        for (tick, at) in places {
+            track.push(SimTick(*tick), Pose::at(*at));
+        }
+        (
+            ObjectSpec::new(id.into(), Pose::at(places[0].1), 1.0, shape),
+            track,
+        )
+    }
+
+    #[test]
+    fn a_hand_lets_go_before_it_takes_what_moves_from_the_same_frame_on() {
+        let put = [
+            (0, Vec3::new(0.0, 0.0, 0.5)),
+            (15, Vec3::new(0.0, 0.0, 2.0)),
+            (30, Vec3::new(2.0, 0.0, 2.0)),
+            (45, Vec3::new(2.0, 0.0, 0.6)),
+            (60, Vec3::new(2.0, 0.0, 0.5)),
+        ];
+        let slide = [
+            (0, Vec3::new(-4.0, 0.0, 0.5)),
+            (60, Vec3::new(-4.1, 0.0, 0.5)),
+            (75, Vec3::new(-5.0, 0.0, 0.5)),
+            (120, Vec3::new(-6.0, 0.0, 0.5)),
+        ];
+        let objects = [block("put", &put), block("slid", &slide)];
+        let shown = Demonstration::of_motions(Table::default(), objects, Vec::new(), SimTick(200));
+        let deeds: Vec<_> = shown.acts.iter().map(|act| (act.hand, &act.deed)).collect();
+        let grasp = |id: &str| HandDeed::Grasp(id.into());
+        assert_eq!(
+            deeds,
+            [
+                (Hand::Right, &grasp("put")),
+                (Hand::Right, &HandDeed::Release),
+                (Hand::Right, &grasp("slid")),
+                (Hand::Right, &HandDeed::Release),
+            ]
+        );
+    }
+
+    #[test]
+    fn what_moves_briefly_as_another_thing_is_put_down_was_pushed() {
+        let put = [
+            (0, Vec3::new(0.0, 0.0, 0.5)),
+            (15, Vec3::new(0.0, 0.0, 2.0)),
+            (30, Vec3::new(2.0, 0.0, 2.0)),
+            (45, Vec3::new(2.0, 0.0, 0.6)),
+            (60, Vec3::new(2.0, 0.0, 0.5)),
+        ];
+        let pushed = [
+            (0, Vec3::new(3.0, 0.0, 0.5)),
+            (60, Vec3::new(3.3, 0.0, 0.5)),
+            (75, Vec3::new(3.4, 0.0, 0.5)),
+        ];
+        let objects = [block("put", &put), block("pushed", &pushed)];
+        let shown = Demonstration::of_motions(Table::default(), objects, Vec::new(), SimTick(200));
+        let taken = |act: &HandAct| act.deed == HandDeed::Grasp("pushed".into());
+        assert!(!shown.acts.iter().any(taken), "{:?}", shown.acts);
+    }
 }

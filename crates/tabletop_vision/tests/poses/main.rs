@@ -6,7 +6,7 @@ mod guided;
 mod scenes;
 
 use bevy::math::Vec3;
-use scenes::{Difficulty, TASKS};
+use scenes::{Difficulty, Sample, TASKS};
 use tabletop_camera::{Camera, DrawnSolid};
 use tabletop_core::Random;
 use tabletop_geometry::{Pose, Rgb, Solid, turn_about};
@@ -67,6 +67,50 @@ fn an_object_that_is_carried_is_followed_and_its_height_is_seen() {
         }
     }
     assert!(largest < 0.1, "{largest}");
+}
+
+/// Moves an object along a way, one step a picture. Everything else has to be seen where it stays, picture by picture.
+fn assert_others_stay(sample: &Sample, moved: usize, way: impl IntoIterator<Item = Vec3>) {
+    let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+    let mut seen = eyes.look(&sample.picture, &KnownScenery::default());
+    let places: Vec<_> = sample.poses.iter().copied().map(Some).collect();
+    eyes.name_by_place(&places, &mut seen);
+    let mut poses = sample.poses.clone();
+    for (frame, step) in way.into_iter().enumerate() {
+        poses[moved].location += step;
+        let seen = eyes.look(&sample.with_poses(&poses), &KnownScenery::default());
+        for (i, (own, truth)) in seen.objects.iter().zip(&poses).enumerate() {
+            let error = own.pose.unwrap().location.distance(truth.location);
+            assert!(
+                error < 0.05 || i == moved || !own.is_sure,
+                "frame {frame}: object {i} is {error} off"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_was_under_a_ring_that_is_lifted_stays() {
+    let [small, other_peg] = [5, 1];
+    for seed in 0..8 {
+        let sample = TASKS[3].sample(&Difficulty::default(), seed);
+        let lift = [Vec3::Z * 0.7; 3];
+        let over = sample.poses[other_peg].location - sample.poses[small].location;
+        let carry = [over.with_z(0.0) / 5.0; 5];
+        assert_others_stay(&sample, small, lift.into_iter().chain(carry));
+    }
+}
+
+#[test]
+fn what_a_fast_block_flies_past_stays() {
+    for seed in 0..8 {
+        let sample = TASKS[2].sample(&Difficulty::default(), seed);
+        let others = &sample.poses[1..];
+        let stops = others.iter().map(|pose| pose.location + Vec3::Z * 2.5);
+        let mut at = sample.poses[0].location;
+        let way = stops.map(|stop| stop - std::mem::replace(&mut at, stop));
+        assert_others_stay(&sample, 0, way);
+    }
 }
 
 #[test]
