@@ -240,13 +240,18 @@ struct Attempt<'a> {
     folder: Option<PathBuf>,
 }
 
+/// Gives pictures the size that a policy needs.
+fn resize_for(policy: &dyn PicturePolicy, head: &mut HeadCamera) {
+    if let Some([width, height]) = policy.picture_size() {
+        (head.width, head.height) = (width, height);
+    }
+}
+
 impl Attempt<'_> {
     /// The camera by whose pictures a policy decides.
     fn camera_of_policy(&self, table: &Table) -> Option<Camera> {
         let mut head = HeadCamera::default();
-        if let Some([width, height]) = self.policy?.picture_size() {
-            (head.width, head.height) = (width, height);
-        }
+        resize_for(self.policy?, &mut head);
         if let Some(description) = &self.robot.description {
             head.carrier = CameraCarrier::from(&description.layout);
         }
@@ -306,9 +311,8 @@ impl Attempt<'_> {
         if let Some(real) = real {
             real::stand_in(&mut app, real);
         }
-        if let Some([width, height]) = self.policy.and_then(PicturePolicy::picture_size) {
-            let mut camera = app.world_mut().resource_mut::<HeadCamera>();
-            (camera.width, camera.height) = (width, height);
+        if let Some(policy) = self.policy {
+            resize_for(policy, &mut app.world_mut().resource_mut::<HeadCamera>());
         }
         app.world_mut()
             .write_command(SceneCommand::Set(Box::new(scene)));

@@ -83,10 +83,12 @@ pub fn scattered_for(
         let Ok(binding) = task.bind(requirements, &objects) else {
             return true;
         };
-        let is_seen = camera.is_none_or(|camera| {
+        if let Some(camera) = camera {
             let scene = StillScene::new(camera, &scene.table, objects.clone());
-            scene.keeps_in_view(task, &binding)
-        });
+            if !scene.keeps_in_view(task, &binding) {
+                return false;
+            }
+        }
         let seen = objects.into_iter().map(|spec| {
             let is_fixed = spec.is_fixed();
             let (shape, pose) = (spec.shape, spec.pose);
@@ -102,7 +104,7 @@ pub fn scattered_for(
             objects: seen.collect(),
             ..Sight::default()
         };
-        is_seen && is_feasible(task, &binding, &sight)
+        is_feasible(task, &binding, &sight)
     };
     let seeds = std::iter::once(seed).chain((1..DRAWS).map(|draw| {
         let mixed = seed ^ draw.wrapping_mul(0xd6e8_feb8_6659_fd93);

@@ -4,7 +4,7 @@ use bevy::math::Vec2;
 use tabletop_camera::{DrawnSolid, PictureWindow};
 
 use crate::{
-    known::{KnownObject, StandingPose, StandingSolid},
+    known::{KnownObject, Stance, StandingPose, StandingSolid},
     refine::{COARSE, FINE, Refinement, RefinementStage},
     residual::{OUTLIER, Residual, TriedFit},
     segment::Blob,
@@ -269,12 +269,9 @@ impl<'p> Guess<'_, '_, 'p> {
     fn tried(&mut self, seed: &Seed) -> Vec<(StandingPose, TriedFit)> {
         let mut tried = Vec::new();
         for stance in 0..self.object.stances().len() {
-            let period = self.object.stances()[stance].symmetry.period();
-            let yaws = period.map_or(1, |period| (period / YAW_STEP).ceil() as usize);
-            let step = period.unwrap_or(0.0) / yaws as f32;
-            let mut on_table: Vec<_> = (0..yaws)
-                .map(|i| {
-                    let placement = self.at(seed.pixel, stance, 0.0, i as f32 * step);
+            let mut on_table: Vec<_> = turns(&self.object.stances()[stance])
+                .map(|yaw| {
+                    let placement = self.at(seed.pixel, stance, 0.0, yaw);
                     (placement, self.trial(&placement))
                 })
                 .collect();
@@ -299,18 +296,23 @@ impl<'p> Guess<'_, '_, 'p> {
         const NEAR: f32 = 3.0;
         let own = &self.object.stances()[0];
         let (low, radius, symmetry) = (own.low, own.radius, own.symmetry);
+        let turns = turns(own);
         let mut tried = Vec::new();
         for (neighbour, heights) in self.neighbours.clone() {
             for height in heights {
                 let location = neighbour.location.truncate().extend(height - low);
-                let placement = StandingPose {
-                    yaw: symmetry.reduced(neighbour.yaw),
-                    ..StandingPose::at(location)
-                };
                 let about = self.at(seed.pixel, 0, height, 0.0);
-                let is_near = about.location.distance(placement.location) < NEAR * radius;
-                if is_near && has_room(self.object, &placement, &self.taken) {
-                    tried.push((placement, self.trial(&placement)));
+                if about.location.distance(location) >= NEAR * radius {
+                    continue;
+                }
+                for turn in turns.clone() {
+                    let placement = StandingPose {
+                        yaw: symmetry.reduced(neighbour.yaw + turn),
+                        ..StandingPose::at(location)
+                    };
+                    if has_room(self.object, &placement, &self.taken) {
+                        tried.push((placement, self.trial(&placement)));
+                    }
                 }
             }
         }
@@ -352,6 +354,14 @@ impl Guess<'_, '_, '_> {
         let refined = near.map(|height| refinement.refined(free.at_height(height, eye), stages));
         refined.min_by(|a, b| a.1.gain.total_cmp(&b.1.gain))
     }
+}
+
+/// Turns about the vertical, in rad, after which an object looks different.
+fn turns(stance: &Stance) -> impl Iterator<Item = f32> + Clone + use<> {
+    let period = stance.symmetry.period();
+    let count = period.map_or(1, |period| (period / YAW_STEP).ceil() as usize);
+    let step = period.unwrap_or(0.0) / count as f32;
+    (0..count).map(move |i| i as f32 * step)
 }
 
 fn middle_of(pixels: &[usize], width: usize) -> Vec2 {

@@ -10,7 +10,7 @@ use tabletop_user::{Action, Chosen, Dragging, KeySystems, Keys, UserCamera, was_
 
 use crate::input::{
     around::Around,
-    repeats::Repeats,
+    repeats::{Repeats, StepKeys},
     travel::{self, Travel},
     turns::{AXES, TurnSums},
 };
@@ -153,7 +153,12 @@ fn shift(
         false => STEP,
     };
     let every = Duration::from_secs_f32(step / SPEED);
-    let steps = repeats.steps(&keys, &MOVES, every, time.elapsed());
+    let steps = repeats.steps(&StepKeys {
+        keys: &keys,
+        actions: &MOVES,
+        every,
+        now: time.elapsed(),
+    });
     let Some(object) = handling.chosen.0.filter(|_| steps != [0; 3]) else {
         return;
     };
@@ -211,7 +216,12 @@ fn turn(
         false => TURN_STEP,
     };
     let every = Duration::from_secs_f32(step as f32 / TURN_SPEED);
-    let steps = repeats.steps(&keys, &TURNS, every, time.elapsed());
+    let steps = repeats.steps(&StepKeys {
+        keys: &keys,
+        actions: &TURNS,
+        every,
+        now: time.elapsed(),
+    });
     if steps == [0; 3] || handling.location().is_none() {
         return;
     }

@@ -9,7 +9,7 @@ use bevy::{input::mouse::MouseWheel, prelude::*};
 use tabletop_core::{
     Actor, CommandWriter, HandCommand, Hands, ObjectSpec, Paused, SimTick, TICKS_PER_SECOND, Table,
 };
-use tabletop_user::{Chosen, DragPlane, Dragging, Measuring};
+use tabletop_user::{Chosen, DragPlane, Dragging, KeyboardFocus, Measuring};
 
 use self::carriage::Carriage;
 use crate::input::{
@@ -106,9 +106,10 @@ fn forget_press(mut press: ResMut<MousePress>) {
 }
 
 /// The button goes down: on the held object a drag begins, on an arrow a turn, and anywhere else the hand lets go; with an empty hand a click
-/// begins.
+/// begins. If something is being typed, the hand does not let go: what was typed may be where it moves what it holds.
 fn press(
     buttons: Res<Buttons>,
+    focus: Res<KeyboardFocus>,
     pointer: Res<Pointer>,
     pickable: Pickable,
     hands: Res<Hands>,
@@ -147,6 +148,8 @@ fn press(
         carriage.map_or(MousePress::Idle, MousePress::Drag)
     } else if let (None, Some(turned)) = (picked, turned) {
         MousePress::Turn(turned)
+    } else if *focus == KeyboardFocus::Text {
+        MousePress::Idle
     } else {
         commands.write(Actor::Mouse, HandCommand::Release(hand));
         match dragging.is_level {

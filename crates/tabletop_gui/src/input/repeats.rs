@@ -21,28 +21,32 @@ pub(super) struct Repeats {
     pushed: [f32; 3],
 }
 
+/// The keys in a frame, by which things go in steps along three axes.
+pub(super) struct StepKeys<'a> {
+    pub keys: &'a Keys<'a>,
+    /// The actions along each axis, forth and back.
+    pub actions: &'a [[Action; 2]; 3],
+    /// The time between two steps of a key that stays down.
+    pub every: Duration,
+    pub now: Duration,
+}
+
 impl Repeats {
     /// The steps in this frame along each axis.
-    pub(super) fn steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
-        let pushed = self.pushed_steps(keys, actions, every, now);
-        let struck = self.struck_steps(keys, actions, every, now);
+    pub(super) fn steps(&mut self, frame: &StepKeys) -> [i32; 3] {
+        let pushed = self.pushed_steps(frame);
+        let struck = self.struck_steps(frame);
         std::array::from_fn(|axis| pushed[axis] + struck[axis])
     }
 
     /// The steps of sticks and triggers, which move the faster the farther they are pushed.
-    fn pushed_steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
+    fn pushed_steps(&mut self, frame: &StepKeys) -> [i32; 3] {
+        let StepKeys {
+            keys,
+            actions,
+            every,
+            now,
+        } = *frame;
         let passed = now.saturating_sub(self.last).div_duration_f32(every);
         let passed = passed.min(MOST_STEPS as f32);
         self.last = now;
@@ -57,13 +61,13 @@ impl Repeats {
         })
     }
 
-    fn struck_steps(
-        &mut self,
-        keys: &Keys,
-        actions: &[[Action; 2]; 3],
-        every: Duration,
-        now: Duration,
-    ) -> [i32; 3] {
+    fn struck_steps(&mut self, frame: &StepKeys) -> [i32; 3] {
+        let StepKeys {
+            keys,
+            actions,
+            every,
+            now,
+        } = *frame;
         let struck = actions.map(|[plus, minus]| {
             i32::from(keys.was_struck(plus)) - i32::from(keys.was_struck(minus))
         });

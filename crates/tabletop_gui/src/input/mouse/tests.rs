@@ -92,6 +92,21 @@ fn a_press_beside_the_held_object_releases_it_and_takes_nothing() {
 }
 
 #[test]
+fn a_press_that_ends_typing_does_not_release() {
+    let mut test = TestWorld::new(plugin);
+    test.hold("red", Vec3::Z);
+    test.app.insert_resource(KeyboardFocus::Text);
+    test.point_at(ABOVE_TABLE);
+    assert_eq!(test.press(), []);
+    assert_eq!(test.come_up(), []);
+    test.app.insert_resource(KeyboardFocus::World);
+    assert_eq!(
+        test.press(),
+        [SimCommand::Hand(HandCommand::Release(Hand::Any))]
+    );
+}
+
+#[test]
 fn a_press_on_a_panel_is_the_panels() {
     let mut test = TestWorld::new(plugin);
     test.hold("red", Vec3::Z);

@@ -55,16 +55,15 @@ impl ObjectList {
         self.copied = specs;
     }
 
-    /// The edits that take the selected objects from the table, unless one of them is held.
+    /// The edits that take the selected objects from the table: none if one of them is held.
     pub fn removed(&self, objects: &[PresentObject]) -> Vec<ObjectEdit> {
         let selected = self.selected_of(objects);
-        match selected.iter().all(|it| it.holder.is_none()) {
-            true => selected
-                .iter()
-                .map(|it| ObjectEdit::Remove(it.spec.id.clone()))
-                .collect(),
-            false => Vec::new(),
+        if selected.iter().any(|it| it.holder.is_some()) {
+            return Vec::new();
         }
+        let removed = selected.iter();
+        let removed = removed.map(|it| ObjectEdit::Remove(it.spec.id.clone()));
+        removed.collect()
     }
 
     /// Keeps the selected objects for pasting.
@@ -195,9 +194,8 @@ fn row(ui: &mut Ui, height: f32, object: &PresentObject, selected: &mut Vec<Stri
 
 /// The buttons that copy and remove.
 fn tools(ui: &mut Ui, objects: &[PresentObject], list: &mut ObjectList) -> Vec<ObjectEdit> {
-    let selected = list.selected_of(objects);
-    let has_some = !selected.is_empty();
-    let are_free = has_some && selected.iter().all(|it| it.holder.is_none());
+    let has_some = !list.selected_of(objects).is_empty();
+    let removed = list.removed(objects);
     let mut edits = Vec::new();
     ui.horizontal(|ui| {
         let duplicate = "Puts the same objects again beside them";
@@ -212,8 +210,8 @@ fn tools(ui: &mut Ui, objects: &[PresentObject], list: &mut ObjectList) -> Vec<O
             edits = list.pasted(objects);
         }
         let delete = "Takes these objects from the table; Undo brings them back";
-        if button(ui, are_free, "Delete", delete).clicked() {
-            edits = list.removed(objects);
+        if button(ui, !removed.is_empty(), "Delete", delete).clicked() {
+            edits = removed;
         }
         if button(ui, !objects.is_empty(), "All", "Selects all objects").clicked() {
             list.selected = objects.iter().map(|it| it.spec.id.clone()).collect();
