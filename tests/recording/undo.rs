@@ -538,8 +538,7 @@ fn record_after_undo(name: &str, seeds: impl Iterator<Item = u64>) {
 
 #[test]
 fn a_recording_after_undo_outside_recordings_replays() {
-    // Known to fall short: after some undone acts, such as those of seed 5, objects are not in the same order in the replay.
-    record_after_undo("few", (0..5).chain(6..10));
+    record_after_undo("few", 0..10);
 }
 
 #[test]

@@ -35,19 +35,24 @@ pub struct Evaluation {
 pub enum PolicyFailure {
     /// It wanted to take something where nothing is.
     TookNothing,
-    /// It said that the task is done, and it is not.
-    NotDone,
+    /// It said after so many moves that the task is done, and it is not.
+    NotDone(usize),
     /// It went on for ever.
     Endless,
 }
 
 impl fmt::Display for PolicyFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::TookNothing => "the policy took something where nothing is",
-            Self::NotDone => "the policy said that the task is done, and it is not",
-            Self::Endless => "the policy went on after twice as many moves as were shown",
-        })
+        match self {
+            Self::TookNothing => f.write_str("the policy took something where nothing is"),
+            Self::NotDone(moves) => write!(
+                f,
+                "the policy said after {moves} moves that the task is done, and it is not"
+            ),
+            Self::Endless => {
+                f.write_str("the policy went on after twice as many moves as were shown")
+            }
+        }
     }
 }
 
@@ -92,7 +97,7 @@ impl Policy {
         evaluation: &mut Evaluation,
     ) -> Result<(), PolicyFailure> {
         let bindings = bindings(task, &beginning.binding, &beginning.objects);
-        for _ in 0..=2 * task.steps.len() {
+        for moves in 0..=2 * task.steps.len() {
             let picture = scene.picture(rasterizer);
             match self.decide(&picture, &scene.camera) {
                 Decision::Move { pick, place } => {
@@ -107,7 +112,7 @@ impl Policy {
                 Decision::Done => {
                     let mut bindings = bindings.iter();
                     let is_done = bindings.any(|binding| scene.shows(task, binding, TOLERANCE));
-                    return is_done.then_some(()).ok_or(PolicyFailure::NotDone);
+                    return is_done.then_some(()).ok_or(PolicyFailure::NotDone(moves));
                 }
             }
         }

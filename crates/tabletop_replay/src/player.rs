@@ -144,8 +144,11 @@ impl Player {
 /// True if a command that follows another one in a pause was given at another moment of it: otherwise it would be carried out first.
 fn begins_moment(next: &SessionCommand, last: &SimCommand) -> bool {
     match &next.command {
-        SimCommand::Recording(RecordingCommand::Start)
-        | SimCommand::Clock(ClockCommand::SetPaused(false)) => true,
+        SimCommand::Recording(RecordingCommand::Start) => true,
+        SimCommand::Clock(ClockCommand::SetPaused(false)) => {
+            let is_beginning = *last == RecordingCommand::Start.into();
+            !(next.at_once && is_beginning)
+        }
         SimCommand::Scene(_) => !next.at_once,
         SimCommand::Recording(RecordingCommand::Finish) => false,
         SimCommand::Clock(ClockCommand::SetPaused(true))
@@ -403,5 +406,22 @@ mod tests {
         assert_eq!(player.due(SimTick(1)).len(), 2);
         assert_eq!(player.due(SimTick(1)).len(), 2);
         assert!(player.is_over());
+    }
+
+    #[test]
+    fn a_recording_starts_in_the_moment_in_which_a_pause_ends_or_before() {
+        let resume = SimCommand::Clock(ClockCommand::SetPaused(false));
+        for (at_once, moments) in [(false, [1, 1]), (true, [2, 0])] {
+            let mut player = player(&[
+                (1, SimCommand::Recording(RecordingCommand::Start)),
+                (1, resume.clone()),
+            ]);
+            player.has_paused = true;
+            if let [_, resume] = Arc::make_mut(&mut player.commands) {
+                resume.at_once = at_once;
+            }
+            let given = moments.map(|_| player.due(SimTick(1)).len());
+            assert_eq!(given, moments, "{at_once}");
+        }
     }
 }

@@ -113,7 +113,8 @@ pub struct SessionCommand {
     pub actor: Actor,
     /// The command.
     pub command: SimCommand,
-    /// Of a scene that is set in a pause: it was in the same moment as the scene before it, or as the start of the recording.
+    /// Of a scene that is set in a pause: it was in the same moment as the scene before it, or as the start of the recording. Of the end of a pause: it
+    /// was in the same moment as the start of the recording.
     #[serde(default, skip_serializing_if = "is_false")]
     pub at_once: bool,
 }

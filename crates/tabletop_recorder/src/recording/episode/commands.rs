@@ -17,7 +17,9 @@ impl Episode {
             .iter()
             .filter(|issued| is_logged(&issued.command))
             .map(|issued| (self.tick, issued.command.phase()));
-        if !self.is_paused && phases.next().is_some_and(|first| Some(first) <= self.last) {
+        let goes_back = phases.next().is_some_and(|first| Some(first) <= self.last);
+        // Where a recording begins, a pause lies before the start.
+        if goes_back && !self.is_paused && !self.is_beginning {
             self.log_pause(true)?;
             self.log_pause(false)?;
         }
@@ -26,7 +28,10 @@ impl Episode {
 
     /// Logs that the program itself has paused or resumed the simulation.
     pub(super) fn log_pause(&mut self, paused: bool) -> Result<(), RecorderError> {
-        let pause = SessionCommand::of_app(self.tick, ClockCommand::SetPaused(paused));
+        let pause = SessionCommand {
+            at_once: self.is_beginning && !paused,
+            ..SessionCommand::of_app(self.tick, ClockCommand::SetPaused(paused))
+        };
         let line = command_line(&pause)?;
         self.is_paused = paused;
         self.append_commands(&line)
@@ -34,12 +39,15 @@ impl Episode {
 
     fn log(&mut self, commands: &[IssuedCommand]) -> Result<(), RecorderError> {
         let mut lines = Vec::new();
-        let mut follows = std::mem::take(&mut self.is_beginning);
+        let is_beginning = std::mem::take(&mut self.is_beginning);
+        let mut follows = is_beginning;
         for issued in commands {
             if !is_logged(&issued.command) {
                 continue;
             }
+            let mut resumes = false;
             if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = issued.command {
+                resumes = self.is_paused && !paused;
                 self.is_paused = paused;
             }
             self.logged.push(LoggedCommand {
@@ -51,7 +59,7 @@ impl Episode {
             self.last = Some((self.tick, issued.command.phase()));
             let is_scene = matches!(issued.command, SimCommand::Scene(_));
             let command = SessionCommand {
-                at_once: self.is_paused && is_scene && follows,
+                at_once: self.is_paused && is_scene && follows || resumes && is_beginning,
                 ..SessionCommand::of(self.tick, issued)
             };
             follows |= is_scene;
