@@ -196,10 +196,11 @@ fn convolve_pixels<const SIDE: usize, const PIXELS: usize, S: Simd>(
                 }
             }
             let sums = sums.map(|sum| simd.as_array_f32x16(sum));
-            for output in 0..BLOCK {
+            let columns: [[f32; PIXELS]; BLOCK] =
+                std::array::from_fn(|output| sums.map(|sums| sums[output]));
+            for (output, column) in columns.iter().enumerate() {
                 let at = (block * BLOCK + output) * stride + first + pixel;
-                let column: [f32; PIXELS] = std::array::from_fn(|pixel| sums[pixel][output]);
-                numbers[at..at + PIXELS].copy_from_slice(&column);
+                numbers[at..at + PIXELS].copy_from_slice(column);
             }
         }
     }

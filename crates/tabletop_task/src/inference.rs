@@ -190,7 +190,7 @@ mod tests {
             track.push(SimTick(*tick), Pose::at(*at));
         }
         (
-            ObjectSpec::new(id.into(), Pose::at(places[0].1), 1.0, shape),
+            ObjectSpec::new(id, Pose::at(places[0].1), 1.0, shape),
             track,
         )
     }
