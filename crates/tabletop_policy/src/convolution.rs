@@ -82,15 +82,19 @@ impl Convolution {
     }
 
     pub fn forward(&self, parameters: &[f32], input: &Planes) -> Planes {
+        let packed = self.packed_forward(parameters);
+        let mut output = Planes::new(self.outputs, input.width(), input.height());
+        self.convolve(&packed, &parameters[self.biases()], input, &mut output);
+        output
+    }
+
+    fn packed_forward(&self, parameters: &[f32]) -> Vec<f32> {
         let weights = &parameters[self.weights()];
         let terms = self.inputs * self.taps();
         let weight = |output: usize, input: usize, tap: usize| {
             weights[output * terms + input * self.taps() + tap]
         };
-        let packed = self.packed([self.inputs, self.outputs], weight);
-        let mut output = Planes::new(self.outputs, input.width(), input.height());
-        self.convolve(&packed, &parameters[self.biases()], input, &mut output);
-        output
+        self.packed([self.inputs, self.outputs], weight)
     }
 
     /// The gradient of the input, from that of the output.
@@ -286,6 +290,29 @@ mod tests {
         inside.map_or(0.0, |(x, y)| planes.get(plane, x, y))
     }
 
+    /// As [`Convolution::forward`] does on a processor with short vectors.
+    fn forward_in_short_vectors(
+        convolution: &Convolution,
+        parameters: &[f32],
+        input: &Planes,
+    ) -> Planes {
+        let packed = &convolution.packed_forward(parameters);
+        let biases = &parameters[convolution.biases()];
+        let mut output = Planes::new(convolution.outputs, input.width(), input.height());
+        let to = &mut output;
+        let level = Level::baseline();
+        match convolution.side {
+            1 => {
+                dispatch!(level, simd => convolve_pixels::<1, 2, _>(simd, packed, biases, input, to))
+            }
+            _ => {
+                dispatch!(level, simd => convolve_pixels::<3, 2, _>(simd, packed, biases, input, to))
+            }
+        }
+        output.clear_borders();
+        output
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(16))]
 
@@ -302,6 +329,7 @@ mod tests {
             convolution.draw(&mut parameters, &mut Random::new(seed));
             let input = random_planes(inputs, [width, height], seed ^ 1);
             let output = convolution.forward(&parameters, &input);
+            prop_assert!(output == forward_in_short_vectors(&convolution, &parameters, &input));
             let taps = side * side;
             for (plane, row, column) in [(0, 0, 0), (5, height / 2, width / 2), (15, height - 1, width - 1)] {
                 let mut sum = 0.1;
