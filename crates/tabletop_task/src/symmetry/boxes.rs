@@ -3,8 +3,6 @@
 use bevy::math::{Quat, Vec3};
 use tabletop_geometry::{Bounds, Pose, Primitive, Rgb, Solid};
 
-use super::likeness::SAME_LENGTH;
-
 /// A cuboid along the axes, in units.
 pub(super) struct ColoredBox {
     bounds: Bounds,
@@ -31,15 +29,13 @@ fn is_along_axes(rotation: Quat) -> bool {
 }
 
 /// True if the boxes fill the same space as the others, in the same colours: their faces divide space into cells, each of which has the colours of the boxes
-/// around it.
-pub(super) fn fill_the_same(boxes: &[ColoredBox], others: &[ColoredBox]) -> bool {
+/// around it. Lengths that differ by up to `same` units look the same.
+pub(super) fn fill_the_same(boxes: &[ColoredBox], others: &[ColoredBox], same: f32) -> bool {
     let is_same_size = bounds_of(boxes)
         .zip(bounds_of(others))
-        .is_some_and(|(a, b)| {
-            a.low.distance(b.low).max(a.high.distance(b.high)) < 2.0 * SAME_LENGTH
-        });
+        .is_some_and(|(a, b)| a.low.distance(b.low).max(a.high.distance(b.high)) < 2.0 * same);
     is_same_size && {
-        let [xs, ys, zs] = [0, 1, 2].map(|axis| middles(boxes, others, axis));
+        let [xs, ys, zs] = [0, 1, 2].map(|axis| middles(boxes, others, axis, same));
         let rows = xs.iter().flat_map(|x| ys.iter().map(move |y| (x, y)));
         let mut cells = rows.flat_map(|(x, y)| zs.iter().map(|z| Vec3::new(*x, *y, *z)));
         cells.all(|cell| shows_colors(cell, boxes, others) && shows_colors(cell, others, boxes))
@@ -51,14 +47,14 @@ fn bounds_of(boxes: &[ColoredBox]) -> Option<Bounds> {
     all.reduce(Bounds::union)
 }
 
-/// The coordinates of the cells' centres along an axis.
-fn middles(boxes: &[ColoredBox], others: &[ColoredBox], axis: usize) -> Vec<f32> {
+/// The coordinates of the centres of cells wider than `same` along an axis.
+fn middles(boxes: &[ColoredBox], others: &[ColoredBox], axis: usize, same: f32) -> Vec<f32> {
     let faces = boxes.iter().chain(others);
     let faces = faces.flat_map(|one| [one.bounds.low[axis], one.bounds.high[axis]]);
     let mut faces: Vec<_> = faces.collect();
     faces.sort_by(f32::total_cmp);
     let between = faces.array_windows::<2>();
-    let wide = between.filter(|[low, high]| high - low > SAME_LENGTH);
+    let wide = between.filter(|[low, high]| high - low > same);
     wide.map(|[low, high]| low.midpoint(*high)).collect()
 }
 

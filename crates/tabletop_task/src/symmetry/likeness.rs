@@ -21,7 +21,7 @@ pub(super) fn looks_the_same(solids: &[Primitive], centre: Vec3, turn: Quat) -> 
         let turned = boxes(solids, about);
         as_it_was
             .zip(turned)
-            .is_some_and(|(boxes, turned)| fill_the_same(&boxes, &turned))
+            .is_some_and(|(boxes, turned)| fill_the_same(&boxes, &turned, SAME_LENGTH))
     }
 }
 

@@ -6,7 +6,7 @@ use super::{BETTER, ObjectArrangement, STILL_SUPPORTED};
 use crate::{known::StandingPose, refine::TRACKING, support};
 
 /// How an object may have moved, alone among the others.
-struct Motion {
+struct TrackedMotion {
     /// The new placements: its own, and those of what it guides.
     placements: Vec<(usize, Option<StandingPose>)>,
     /// The loss that it saves.
@@ -60,7 +60,7 @@ impl ObjectArrangement<'_, '_> {
     fn follow_motions(&mut self) {
         let mut has_moved = vec![false; self.objects.len()];
         let mut is_known = vec![false; self.objects.len()];
-        let mut motions: Vec<Option<Motion>> = Vec::new();
+        let mut motions: Vec<Option<TrackedMotion>> = Vec::new();
         motions.resize_with(self.objects.len(), || None);
         loop {
             for i in 0..self.objects.len() {
@@ -103,7 +103,7 @@ impl ObjectArrangement<'_, '_> {
     }
 
     /// The motion of an object that explains the picture best. `None` if it is not in the picture.
-    fn motion(&mut self, object: usize) -> Option<Motion> {
+    fn motion(&mut self, object: usize) -> Option<TrackedMotion> {
         let before = self.remember();
         let was_seen = self.windows.clone();
         self.settle(object, &TRACKING, true);
@@ -113,7 +113,7 @@ impl ObjectArrangement<'_, '_> {
             .iter()
             .flat_map(|&i| was_seen[i].iter().chain(&self.windows[i]));
         let window = windows.cloned().reduce(|one, other| one.joined(&other))?;
-        let motion = Motion {
+        let motion = TrackedMotion {
             placements: moved.iter().map(|&i| (i, self.placements[i])).collect(),
             gain: before.loss - self.loss(),
             window,
