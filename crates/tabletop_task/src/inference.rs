@@ -179,6 +179,15 @@ mod tests {
 
     use super::*;
 
+    /// A block is lifted, carried and put down; in the last frame it only settles.
+    const PUT: [(u64, Vec3); 5] = [
+        (0, Vec3::new(0.0, 0.0, 0.5)),
+        (15, Vec3::new(0.0, 0.0, 2.0)),
+        (30, Vec3::new(2.0, 0.0, 2.0)),
+        (45, Vec3::new(2.0, 0.0, 0.6)),
+        (60, Vec3::new(2.0, 0.0, 0.5)),
+    ];
+
     /// A block that is at these places from these ticks on.
     fn block(id: &str, places: &[(u64, Vec3)]) -> (ObjectSpec, Track) {
         let shape = Shape::Block {
@@ -197,20 +206,13 @@ mod tests {
 
     #[test]
     fn a_hand_lets_go_before_it_takes_what_moves_from_the_same_frame_on() {
-        let put = [
-            (0, Vec3::new(0.0, 0.0, 0.5)),
-            (15, Vec3::new(0.0, 0.0, 2.0)),
-            (30, Vec3::new(2.0, 0.0, 2.0)),
-            (45, Vec3::new(2.0, 0.0, 0.6)),
-            (60, Vec3::new(2.0, 0.0, 0.5)),
-        ];
         let slide = [
             (0, Vec3::new(-4.0, 0.0, 0.5)),
             (60, Vec3::new(-4.1, 0.0, 0.5)),
             (75, Vec3::new(-5.0, 0.0, 0.5)),
             (120, Vec3::new(-6.0, 0.0, 0.5)),
         ];
-        let objects = [block("put", &put), block("slid", &slide)];
+        let objects = [block("put", &PUT), block("slid", &slide)];
         let shown = Demonstration::of_motions(Table::default(), objects, Vec::new(), SimTick(200));
         let deeds: Vec<_> = shown.acts.iter().map(|act| (act.hand, &act.deed)).collect();
         let grasp = |id: &str| HandDeed::Grasp(id.into());
@@ -227,19 +229,12 @@ mod tests {
 
     #[test]
     fn what_moves_briefly_as_another_thing_is_put_down_was_pushed() {
-        let put = [
-            (0, Vec3::new(0.0, 0.0, 0.5)),
-            (15, Vec3::new(0.0, 0.0, 2.0)),
-            (30, Vec3::new(2.0, 0.0, 2.0)),
-            (45, Vec3::new(2.0, 0.0, 0.6)),
-            (60, Vec3::new(2.0, 0.0, 0.5)),
-        ];
         let pushed = [
             (0, Vec3::new(3.0, 0.0, 0.5)),
             (60, Vec3::new(3.3, 0.0, 0.5)),
             (75, Vec3::new(3.4, 0.0, 0.5)),
         ];
-        let objects = [block("put", &put), block("pushed", &pushed)];
+        let objects = [block("put", &PUT), block("pushed", &pushed)];
         let shown = Demonstration::of_motions(Table::default(), objects, Vec::new(), SimTick(200));
         let taken = |act: &HandAct| act.deed == HandDeed::Grasp("pushed".into());
         assert!(!shown.acts.iter().any(taken), "{:?}", shown.acts);

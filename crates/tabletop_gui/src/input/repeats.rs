@@ -41,18 +41,15 @@ impl Repeats {
 
     /// The steps of sticks and triggers, which move the faster the farther they are pushed.
     fn pushed_steps(&mut self, frame: &StepKeys) -> [i32; 3] {
-        let StepKeys {
-            keys,
-            actions,
-            every,
-            now,
-        } = *frame;
-        let passed = now.saturating_sub(self.last).div_duration_f32(every);
+        let passed = frame
+            .now
+            .saturating_sub(self.last)
+            .div_duration_f32(frame.every);
         let passed = passed.min(MOST_STEPS as f32);
-        self.last = now;
+        self.last = frame.now;
         std::array::from_fn(|axis| {
-            let [plus, minus] = actions[axis];
-            let pushed = match keys.push(plus, minus) {
+            let [plus, minus] = frame.actions[axis];
+            let pushed = match frame.keys.push(plus, minus) {
                 0.0 => 0.0,
                 push => self.pushed[axis] + push * passed,
             };
@@ -62,27 +59,23 @@ impl Repeats {
     }
 
     fn struck_steps(&mut self, frame: &StepKeys) -> [i32; 3] {
-        let StepKeys {
-            keys,
-            actions,
-            every,
-            now,
-        } = *frame;
-        let struck = actions.map(|[plus, minus]| {
-            i32::from(keys.was_struck(plus)) - i32::from(keys.was_struck(minus))
+        let struck = frame.actions.map(|[plus, minus]| {
+            i32::from(frame.keys.was_struck(plus)) - i32::from(frame.keys.was_struck(minus))
         });
         if struck != [0; 3] {
-            self.next = now + DELAY;
+            self.next = frame.now + DELAY;
             return struck;
         }
-        let held = actions.map(|[plus, minus]| keys.axis(plus, minus) as i32);
+        let held = frame
+            .actions
+            .map(|[plus, minus]| frame.keys.axis(plus, minus) as i32);
         let mut steps = 0;
-        while held != [0; 3] && self.next <= now && steps < MOST_STEPS {
-            self.next += every;
+        while held != [0; 3] && self.next <= frame.now && steps < MOST_STEPS {
+            self.next += frame.every;
             steps += 1;
         }
-        if self.next <= now {
-            self.next = now + every;
+        if self.next <= frame.now {
+            self.next = frame.now + frame.every;
         }
         held.map(|way| way * steps as i32)
     }

@@ -88,10 +88,6 @@ impl ObjectArrangement<'_, '_> {
         self.keep_all_but(is_own, &window.widened(7, self.residual.size()));
         let eye = self.residual.eye();
         let good = self.good();
-        // What is not seen may be hidden below it.
-        let unseen = self.objects.iter().zip(&self.placements).enumerate();
-        let unseen = unseen.filter(|(i, (_, placement))| placement.is_none() && !is_own(*i));
-        let unseen = support::pile_heights(unseen.map(|(_, (other, _))| other), HIGHEST);
         let mut refinement = Refinement {
             residual: &mut self.residual,
             object: known,
@@ -109,6 +105,10 @@ impl ObjectArrangement<'_, '_> {
             let (free, free_trial) = refinement.refined(here, &FINE);
             refinement.is_free = false;
             let mut heights = support::heights(known, &free, others);
+            // What is not seen may be hidden below it.
+            let unseen = self.objects.iter().zip(&self.placements).enumerate();
+            let unseen = unseen.filter(|(i, (_, placement))| placement.is_none() && !is_own(*i));
+            let unseen = support::pile_heights(unseen.map(|(_, (other, _))| other), HIGHEST);
             let low = known.stance(&free).low;
             heights.extend(unseen.iter().skip(1).map(|height| height - low));
             heights.sort_by(|a, b| {
