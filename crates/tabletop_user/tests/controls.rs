@@ -78,7 +78,10 @@ fn sources() -> String {
     fn read(folder: &Path, text: &mut String) {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
-            if path.is_dir() && !path.ends_with("keymap") {
+            if path.ends_with("keymap") || path.ends_with("tests.rs") {
+                continue;
+            }
+            if path.is_dir() {
                 read(&path, text);
             } else if path.extension().is_some_and(|extension| extension == "rs") {
                 let source = fs::read_to_string(&path).unwrap();
