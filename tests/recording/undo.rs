@@ -2,7 +2,7 @@
 
 use std::{fs, ops::Range};
 
-use bevy::prelude::*;
+use bevy::{app::PluginGroupBuilder, prelude::*};
 use tabletop::{
     core::ObjectEdit, history::HistoryPlugin, prelude::*, recorder::write_notes,
     replay::first_difference,
@@ -497,15 +497,38 @@ fn edit(random: &mut Random) -> SimCommand {
     .into()
 }
 
+#[test]
+fn an_object_that_undo_brings_back_into_the_tick_in_which_it_was_made_falls() {
+    let mut demonstration = Demonstration::with("undone_in_its_first_tick", keeps_always());
+    let make = SceneCommand::Make {
+        preset: Preset::BigBlock,
+        seed: 1,
+    };
+    demonstration.tick(&[make.into(), SceneCommand::Clear.into()]);
+    demonstration.act(&[
+        (
+            vec![HistoryCommand::Undo.into(), RecordingCommand::Start.into()],
+            20,
+        ),
+        (vec![RecordingCommand::Finish.into()], 1),
+    ]);
+    assert_replays(&demonstration.folder);
+}
+
+/// The simulator, which can undo outside recordings, too.
+fn keeps_always() -> PluginGroupBuilder {
+    TabletopSimPlugins.build().set(HistoryPlugin {
+        keeps_always: true,
+        ..default()
+    })
+}
+
 /// A recording after random acts outside recordings, of which some were undone, can be read and replays to the same bytes.
 fn record_after_undo(name: &str, seeds: impl Iterator<Item = u64>) {
     for seed in seeds {
         let mut random = Random(seed);
-        let plugins = TabletopSimPlugins.build().set(HistoryPlugin {
-            keeps_always: true,
-            ..default()
-        });
-        let mut demonstration = Demonstration::with(&format!("after_undo_{name}"), plugins);
+        let name = format!("after_undo_{name}");
+        let mut demonstration = Demonstration::with(&name, keeps_always());
         demonstration.tick(&[scene()]);
         for mut commands in script(&mut random, 100) {
             match random.below(16) {

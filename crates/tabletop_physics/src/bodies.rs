@@ -12,7 +12,7 @@ pub use body::collider;
 pub use mass::mass_properties;
 pub use reshape::reshape;
 
-use bevy::prelude::*;
+use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_joints, init_rigid_bodies},
     prelude::RapierRigidBodyHandle,
@@ -20,6 +20,7 @@ use bevy_rapier3d::{
 use tabletop_core::{
     CommandSystems, Joint, ObjectSpec, RestApp as _, RestingSystems, SimSystems, Table, TickSystems,
 };
+use tabletop_history::RollbackApp as _;
 
 use crate::workarounds::burden::NewBodies;
 
@@ -28,8 +29,8 @@ use crate::workarounds::burden::NewBodies;
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BodySystems;
 
-/// Entities that have appeared and have no body yet.
-#[derive(Resource, Default)]
+/// Entities that have appeared and have no body yet. Undo may go back to the middle of a tick, in which there are some.
+#[derive(Resource, Clone, Default)]
 struct PendingBodies {
     bodies: Vec<Entity>,
     joints: Vec<Entity>,
@@ -52,6 +53,7 @@ pub(crate) fn plugin(app: &mut App) {
                 .in_set(RestingSystems),
         )
         .wake_while(any)
+        .rollback_resource::<PendingBodies>()
         .add_observer(note_object)
         .add_observer(note_table)
         .add_observer(note_joint);
@@ -85,10 +87,10 @@ pub fn take_in(world: &mut World) -> Result {
     };
     let PendingBodies { bodies, joints } = std::mem::take(&mut *pending);
     for entity in bodies {
-        let Ok(body) = world.get_entity(entity) else {
-            continue; // It has gone in the tick in which it came.
-        };
-        if let Some(place) = body.get::<Transform>().copied() {
+        if has_gone(world, entity) {
+            continue;
+        }
+        if let Some(place) = world.get::<Transform>(entity).copied() {
             world
                 .entity_mut(entity)
                 .insert(GlobalTransform::from(place));
@@ -105,10 +107,19 @@ pub fn take_in(world: &mut World) -> Result {
         world.resource_mut::<NewBodies>().0.extend(handle);
     }
     for entity in joints {
+        if has_gone(world, entity) {
+            continue;
+        }
         if let Some(connection) = world.get::<Joint>(entity).copied() {
             joint::add_joint(world, entity, &connection);
             world.run_system_cached(init_joints)?;
         }
     }
     Ok(())
+}
+
+/// True if an entity has gone, for good or until undo brings it back, in the tick in which it came.
+fn has_gone(world: &World, entity: Entity) -> bool {
+    let entity = world.get_entity(entity);
+    entity.map_or(true, |entity| entity.contains::<Disabled>())
 }

@@ -15,6 +15,16 @@ struct TrackedMotion {
     window: PictureWindow,
 }
 
+/// What is known of an object's motion.
+#[derive(Default)]
+struct Track {
+    /// True if the object was looked at since something about it changed.
+    is_looked_at: bool,
+    /// The motion that is still to be made.
+    motion: Option<TrackedMotion>,
+    has_moved: bool,
+}
+
 impl ObjectArrangement<'_, '_> {
     /// Begins with objects where they were, follows those that have moved, and finds those that are elsewhere. What was in the air does not stay there, so
     /// it is looked at closely.
@@ -58,36 +68,36 @@ impl ObjectArrangement<'_, '_> {
     /// Moves what has moved. An object is explained badly where it was if it has moved, but also if what has moved hid it, or hides it now. So the motion that
     /// explains most comes first, and whatever that may have explained is looked at again.
     fn follow_motions(&mut self) {
-        let mut has_moved = vec![false; self.objects.len()];
-        let mut is_known = vec![false; self.objects.len()];
-        let mut motions: Vec<Option<TrackedMotion>> = Vec::new();
-        motions.resize_with(self.objects.len(), || None);
+        let mut tracks: Vec<Track> = Vec::new();
+        tracks.resize_with(self.objects.len(), Track::default);
         loop {
-            for i in 0..self.objects.len() {
-                if !is_known[i] {
-                    is_known[i] = true;
-                    motions[i] = match self.may_have_moved(i) {
-                        true => self.motion(i),
-                        false => None,
-                    };
-                    motions[i].take_if(|motion| has_moved[i] && motion.gain < BETTER);
+            for (i, track) in tracks.iter_mut().enumerate() {
+                if !track.is_looked_at {
+                    track.is_looked_at = true;
+                    track.motion = self.motion(i);
+                    track
+                        .motion
+                        .take_if(|motion| track.has_moved && motion.gain < BETTER);
                 }
             }
-            let gain = |i: &usize| motions[*i].as_ref().map(|motion| motion.gain);
-            let open = (0..self.objects.len()).filter_map(|i| Some((i, gain(&i)?)));
-            let best = open.max_by(|one, other| one.1.total_cmp(&other.1));
-            let Some((object, Some(motion))) = best.map(|(i, _)| (i, motions[i].take())) else {
+            let open = tracks.iter_mut().enumerate();
+            let open = open.filter_map(|(i, track)| Some((i, track.motion.as_ref()?.gain, track)));
+            let Some((object, _, track)) = open.max_by(|one, other| one.1.total_cmp(&other.1))
+            else {
                 return;
             };
+            let Some(motion) = track.motion.take() else {
+                return;
+            };
+            track.has_moved = true;
             for &(i, placement) in &motion.placements {
                 self.place(i, placement);
             }
-            has_moved[object] = true;
-            for i in 0..self.objects.len() {
-                let own = motions[i].as_ref().map(|motion| &motion.window);
+            for (i, track) in tracks.iter_mut().enumerate() {
+                let own = track.motion.as_ref().map(|motion| &motion.window);
                 let mut seen = self.windows[i].iter().chain(own);
                 if seen.any(|own| !own.intersection(&motion.window).is_empty()) {
-                    is_known[i] = i == object;
+                    track.is_looked_at = i == object;
                 }
             }
         }
@@ -102,8 +112,11 @@ impl ObjectArrangement<'_, '_> {
         self.hovers(object) || fit.misfit > self.good() * fit.pixels as f32
     }
 
-    /// The motion of an object that explains the picture best. `None` if it is not in the picture.
+    /// The motion of an object that explains the picture best. `None` if it is still where it was, or not in the picture.
     fn motion(&mut self, object: usize) -> Option<TrackedMotion> {
+        if !self.may_have_moved(object) {
+            return None;
+        }
         let before = self.remember();
         let was_seen = self.windows.clone();
         self.settle(object, &TRACKING, true);
