@@ -22,10 +22,11 @@ fn passes(name: &str) {
 }
 
 fn passes_with(name: &str, options: &[&str]) {
-    let output = run(
-        &shipped("scenarios", name),
-        &[&["--quiet"], options].concat(),
-    );
+    passes_at(&shipped("scenarios", name), options);
+}
+
+fn passes_at(scenario: &Path, options: &[&str]) {
+    let output = run(scenario, &[&["--quiet"], options].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(stderr(&output), "");
 }
@@ -69,6 +70,11 @@ fn tasks_are_demonstrated() {
     ] {
         passes(&format!("{name}.ron"));
     }
+}
+
+#[test]
+fn the_example_for_learners_is_demonstrated() {
+    passes_at(&shipped("examples/learn", "hanoi_colors.ron"), &[]);
 }
 
 #[test]
