@@ -489,22 +489,23 @@ fn symmetry(drawn: &[Primitive], touched: &[Primitive]) -> YawSymmetry {
 
 /// True if solids fill the same room, with the same colours, as others do after a turn.
 fn fills_alike(one: &[Primitive], other: &[Primitive], turn: Quat) -> bool {
-    /// Points along each axis, and the part of all that may differ: those next to a surface, by rounding.
+    /// Points along each axis, and how many of all may differ: those next to a surface, by rounding.
     const POINTS: i32 = 16;
-    const DIFFERING: f32 = 0.004;
+    const DIFFERING: usize = 16;
     let bounds = one
         .iter()
         .map(|solid| Bounds::of_primitive(solid, Pose::IDENTITY));
     let Some(bounds) = bounds.reduce(Bounds::union) else {
         return other.is_empty();
     };
-    let differing = (0..POINTS * POINTS * POINTS).filter(|i| {
+    let back = turn.inverse();
+    let mut differing = (0..POINTS * POINTS * POINTS).filter(|i| {
         let cell = [i % POINTS, i / POINTS % POINTS, i / POINTS / POINTS];
         let part = cell.map(|at| (at as f32 + 0.5) / POINTS as f32);
         let point = bounds.low + (bounds.high - bounds.low) * Vec3::from(part);
-        color_at(one, point) != color_at(other, turn.inverse() * point)
+        color_at(one, point) != color_at(other, back * point)
     });
-    differing.count() as f32 <= DIFFERING * (POINTS * POINTS * POINTS) as f32
+    differing.nth(DIFFERING).is_none()
 }
 
 /// The colour of the first solid that contains a point.

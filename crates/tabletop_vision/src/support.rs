@@ -40,6 +40,16 @@ pub(crate) fn heights<'o>(
     heights
 }
 
+/// The heights, from those of supports and of piles on them that are hidden. A pile does not reach the next support: that would be in it.
+pub(crate) fn heights_over(supports: &[f32], piles: &[f32]) -> Vec<f32> {
+    let next = supports.iter().skip(1).copied().chain([f32::INFINITY]);
+    let over = supports.iter().zip(next).flat_map(|(support, next)| {
+        let heights = piles.iter().map(move |pile| support + pile);
+        heights.filter(move |height| *height < next)
+    });
+    over.collect()
+}
+
 /// True if an object stands on the table or on one of the others.
 pub(crate) fn stands<'o>(
     object: &KnownObject,
@@ -113,4 +123,15 @@ pub(crate) fn has_room(
         };
         others.iter().all(is_beside)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hidden_pile_ends_below_the_next_support() {
+        let heights = heights_over(&[0.2, 1.0], &[0.0, 0.4, 0.9]);
+        assert_eq!(heights, [0.2, 0.2 + 0.4, 1.0, 1.4, 1.9]);
+    }
 }

@@ -104,13 +104,16 @@ impl ObjectArrangement<'_, '_> {
             refinement.is_free = true;
             let (free, free_trial) = refinement.refined(here, &FINE);
             refinement.is_free = false;
-            let mut heights = support::heights(known, &free, others);
-            // What is not seen may be hidden below it.
+            let taken: Vec<_> = others
+                .clone()
+                .flat_map(|(other, placement)| other.touched(placement))
+                .collect();
+            // What is not seen may be hidden between it and a support.
             let unseen = self.objects.iter().zip(&self.placements).enumerate();
             let unseen = unseen.filter(|(i, (_, placement))| placement.is_none() && !is_own(*i));
-            let unseen = support::pile_heights(unseen.map(|(_, (other, _))| other), HIGHEST);
-            let low = known.stance(&free).low;
-            heights.extend(unseen.iter().skip(1).map(|height| height - low));
+            let hidden = support::pile_heights(unseen.map(|(_, (other, _))| other), HIGHEST);
+            let supports = support::heights(known, &free, others);
+            let mut heights = support::heights_over(&supports, &hidden);
             heights.sort_by(|a, b| {
                 let [a, b] = [a, b].map(|height| (height - free.location.z).abs());
                 a.total_cmp(&b)
@@ -118,6 +121,8 @@ impl ObjectArrangement<'_, '_> {
             let near = heights.into_iter().take(3);
             let standing =
                 near.map(|height| refinement.refined(free.at_height(height, eye), &FINE));
+            let standing =
+                standing.filter(|(placement, _)| support::has_room(known, placement, &taken));
             let best = standing.min_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
             // What it stands on may not be in its place yet.
             let (hovering, gain) = match !is_last

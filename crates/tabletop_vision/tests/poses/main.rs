@@ -147,6 +147,30 @@ fn a_camera_that_was_moved_is_found_by_the_edges_of_the_table() {
 }
 
 #[test]
+fn rings_stand_on_the_foot_of_their_peg_and_not_in_it() {
+    let task = |name: &str| TASKS.iter().find(|task| task.name == name).unwrap();
+    let noise = Difficulty {
+        noise: 10.0,
+        ..Difficulty::default()
+    };
+    let light = Difficulty {
+        light: 0.3,
+        ..Difficulty::default()
+    };
+    for (name, difficulty, seed) in [("hanoi_rings", noise, 6), ("hanoi", light, 9)] {
+        let sample = task(name).sample(&difficulty, seed);
+        let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+        if difficulty.light > 0.0 {
+            eyes = eyes.in_unknown_light();
+        }
+        let seen = eyes.look(&sample.picture, &KnownScenery::default());
+        for (object, error) in sample.errors(&seen).into_iter().enumerate() {
+            assert!(error.length < 0.02, "{name} {object}: {error:?}");
+        }
+    }
+}
+
+#[test]
 fn what_is_wrong_in_a_hard_picture_is_not_sure() {
     let hard = [
         Difficulty {
