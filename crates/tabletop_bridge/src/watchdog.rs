@@ -2,12 +2,19 @@
 //!
 //! It knows neither sockets nor clocks, and decides from what it is told.
 
-use std::{collections::BTreeMap, fmt, time::Duration};
+mod limb;
+mod state;
+
+use std::{collections::BTreeMap, time::Duration};
+
+pub use limb::MOST_DEVIATION;
+use limb::{LimbMotion, angles};
+pub use state::{StopReason, WatchdogState};
 
 use crate::{
-    limits::{limited_speed, ramped_speed, speed_towards},
+    limits::limited_speed,
     orders::{GripperMotion, RobotOrder},
-    profile::{BridgeProfile, JointProfile},
+    profile::BridgeProfile,
     state::{RobotHealth, RobotState},
     target::{LimbTarget, RobotTarget},
 };
@@ -21,18 +28,11 @@ pub const OLDEST_STATE: Duration = Duration::from_millis(100);
 /// The oldest target that is still followed. Programs set one 60 times a second.
 pub const OLDEST_TARGET: Duration = Duration::from_millis(100);
 
-/// How far a joint may be from where it should be, in rad.
-pub const MOST_DEVIATION: f64 = 0.3;
-
 /// The time in which the joints come to rest when something is wrong.
 pub const RAMP: Duration = Duration::from_millis(100);
 
 /// How long the robot is told to stay where it is, before commands end.
 pub const HOLD: Duration = Duration::from_millis(300);
-
-/// How fast the expectation of a joint driven by velocities forgets, in s: speeds are followed to some percent, and where they lead to is not known for
-/// long. So a joint that stands still is found out if it should turn at 0.3 rad/s or more.
-const FORGETTING: f64 = 1.0;
 
 /// The distance of a joint, in rad, from the angle that it was sent to at which it counts as there.
 const THERE: f64 = 1e-3;
@@ -47,92 +47,6 @@ pub(crate) const REPETITION: Duration = Duration::from_millis(500);
 /// The least change of the head's angle, in rad, and the least time between two, that the robot is sent.
 const HEAD_STEP: f64 = 0.005;
 const HEAD_PERIOD: Duration = Duration::from_millis(100);
-
-/// What a watchdog does.
-#[derive(Clone, Debug, PartialEq)]
-pub enum WatchdogState {
-    /// It looks on and sends nothing.
-    Watching,
-    /// It passes on what the program wants.
-    Armed,
-    /// It brings the joints to rest.
-    Ramping(StopReason),
-    /// The robot stays where it is, and is no longer driven. Only a person starts it again.
-    Held(StopReason),
-}
-
-/// Why a robot is no longer driven.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StopReason {
-    /// The program is done with it.
-    Asked,
-    /// Its joints' states are old.
-    StaleState {
-        /// How old they are.
-        age: Duration,
-    },
-    /// Somebody or something has stopped it.
-    EmergencyStop,
-    /// Its motors are off.
-    Disabled,
-    /// A part of it is faulty.
-    RobotError,
-    /// The program has set no target for too long.
-    ProgramLate {
-        /// How long.
-        by: Duration,
-    },
-    /// This program was not running for too long.
-    WatchdogLate {
-        /// How long.
-        by: Duration,
-    },
-    /// A joint is not where it should be.
-    Deviation {
-        /// The joint.
-        joint: String,
-        /// How far it is from there, in rad.
-        by: f64,
-    },
-    /// The connection is lost; the robot stops by its own time limit.
-    Disconnected(String),
-}
-
-impl fmt::Display for StopReason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ms = Duration::as_millis;
-        match self {
-            Self::Asked => f.write_str("the program is done"),
-            Self::StaleState { age } => {
-                write!(f, "the robot's joint states are {} ms old", ms(age))
-            }
-            Self::EmergencyStop => f.write_str("the robot is stopped: a person must reset it"),
-            Self::Disabled => f.write_str("the robot's motors are off"),
-            Self::RobotError => f.write_str("the robot reports an error"),
-            Self::ProgramLate { by } => write!(f, "the program set no target for {} ms", ms(by)),
-            Self::WatchdogLate { by } => write!(f, "this computer stood still for {} ms", ms(by)),
-            Self::Deviation { joint, by } => {
-                write!(f, "{joint} is {by:.2} rad from where it should be")
-            }
-            Self::Disconnected(why) => f.write_str(why),
-        }
-    }
-}
-
-impl StopReason {
-    /// True if the robot has already stopped by itself, so that commands make no sense.
-    fn is_robot_at_rest(&self) -> bool {
-        match self {
-            Self::EmergencyStop | Self::Disabled | Self::Disconnected(_) => true,
-            Self::Asked
-            | Self::StaleState { .. }
-            | Self::RobotError
-            | Self::ProgramLate { .. }
-            | Self::WatchdogLate { .. }
-            | Self::Deviation { .. } => false,
-        }
-    }
-}
 
 /// See the module.
 #[derive(Debug)]
@@ -159,33 +73,12 @@ struct SentOpening {
     at: Duration,
 }
 
-/// The motion of a driven limb.
-#[derive(Clone, Debug)]
-struct LimbMotion {
-    /// Its place in the profile.
-    limb: usize,
-    /// The joints' speeds of the last command, in rad/s.
-    speeds: Vec<f64>,
-    /// Where the joints should be, in rad.
-    expected: Vec<f64>,
-    /// True if the last command was of positions.
-    is_by_positions: bool,
-    /// Where it is held.
-    held: Option<Vec<f64>>,
-}
-
 impl Watchdog {
     /// A watchdog that looks on. Limbs are named by their places in the profile.
     pub fn new(profile: BridgeProfile, driven: &[usize], share: f64) -> Self {
         let limbs = driven.iter().map(|limb| {
             let joints = profile.limbs[*limb].joints.len();
-            LimbMotion {
-                limb: *limb,
-                speeds: vec![0.0; joints],
-                expected: vec![0.0; joints],
-                is_by_positions: false,
-                held: None,
-            }
+            LimbMotion::at_rest(*limb, joints)
         });
         Self {
             limbs: limbs.collect(),
@@ -524,80 +417,6 @@ impl Watchdog {
     }
 }
 
-impl LimbMotion {
-    /// Turns the joints at wanted speeds, as far as limits let them. `lag` is the time, in s, from the measured angles to the end of the command.
-    fn turn(
-        &mut self,
-        joints: &[JointProfile],
-        share: f64,
-        measured: &[f64],
-        wanted: &[f64],
-        lag: f64,
-        seconds: f64,
-    ) -> RobotOrder {
-        if self.is_by_positions {
-            self.is_by_positions = false;
-            self.expected = measured.to_owned();
-        }
-        for (place, joint) in joints.iter().enumerate() {
-            let last = self.speeds[place];
-            let ahead = measured[place] + last * lag;
-            let limited = limited_speed(joint, share, ahead, wanted[place]);
-            let speed = limited_speed(joint, share, ahead, ramped_speed(last, limited, seconds));
-            let forgotten = (measured[place] - self.expected[place]) * seconds / FORGETTING;
-            self.expected[place] += speed * seconds + forgotten;
-            self.speeds[place] = speed;
-        }
-        RobotOrder::Velocities {
-            limb: self.limb,
-            speeds: self.speeds.clone(),
-        }
-    }
-
-    /// Brings the joints nearer to their goals. What is sent are angles on the way, so that a joint is soon found out that does not follow.
-    fn approach(
-        &mut self,
-        joints: &[JointProfile],
-        share: f64,
-        measured: &[f64],
-        goals: &[f64],
-        seconds: f64,
-    ) -> RobotOrder {
-        if !self.is_by_positions {
-            self.is_by_positions = true;
-            self.expected = measured.to_owned();
-        }
-        for (place, joint) in joints.iter().enumerate() {
-            let way = goals[place] - self.expected[place];
-            let limited = limited_speed(joint, share, self.expected[place], speed_towards(way));
-            let speed = ramped_speed(self.speeds[place], limited, seconds);
-            self.speeds[place] = limited_speed(joint, share, self.expected[place], speed);
-            self.expected[place] += self.speeds[place] * seconds;
-        }
-        RobotOrder::Positions {
-            limb: self.limb,
-            angles: self.expected.clone(),
-        }
-    }
-
-    fn deviation(&self, profile: &BridgeProfile, state: &RobotState) -> Option<StopReason> {
-        let joints = &profile.limbs[self.limb].joints;
-        let measured = angles(joints, state);
-        let deviations = measured
-            .iter()
-            .zip(&self.expected)
-            .map(|(measured, expected)| (measured - expected).abs());
-        let (joint, by) = joints
-            .iter()
-            .zip(deviations)
-            .find(|(_, by)| *by > MOST_DEVIATION)?;
-        Some(StopReason::Deviation {
-            joint: joint.name.clone(),
-            by,
-        })
-    }
-}
-
 /// Why a robot that says this of itself cannot be driven.
 pub(crate) fn unfit(now: Duration, state: &RobotState) -> Option<StopReason> {
     match state.health {
@@ -608,12 +427,6 @@ pub(crate) fn unfit(now: Duration, state: &RobotState) -> Option<StopReason> {
     }
     let age = state.age(now).unwrap_or(Duration::MAX);
     (age > OLDEST_STATE).then_some(StopReason::StaleState { age })
-}
-
-/// The measured angles of joints, which are known once a state has an age.
-fn angles(joints: &[JointProfile], state: &RobotState) -> Vec<f64> {
-    let angle = |joint: &JointProfile| state.joints.get(&joint.name).map_or(0.0, |it| it.position);
-    joints.iter().map(angle).collect()
 }
 
 #[cfg(test)]

@@ -9,10 +9,11 @@ use crate::{
     arrangement::ObjectArrangement,
     clutter::{Clutter, clutter},
     identity::keep_identities,
-    known::{KnownObject, YawSymmetry},
+    known::KnownObject,
     lighting::estimated,
     refine::{Refinement, deviations},
     residual::{OUTLIER, Residual},
+    symmetry::YawSymmetry,
 };
 
 /// Eyes that know some objects, and remember where they were in the last picture.

@@ -51,9 +51,11 @@ mod refine;
 mod residual;
 mod segment;
 mod support;
+mod symmetry;
 
 pub use calibration::calibrated;
 pub use clutter::Clutter;
 pub use description::{DescribedObject, Descriptions};
 pub use eyes::{Eyes, KnownScenery, ObjectPercept, Percept, PoseDeviation, Visibility};
-pub use known::{KnownObject, YawSymmetry, with_guides};
+pub use known::{KnownObject, with_guides};
+pub use symmetry::YawSymmetry;

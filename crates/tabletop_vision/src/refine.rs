@@ -6,9 +6,10 @@ use tabletop_camera::{DrawnSolid, PictureWindow};
 use tabletop_core::Picture;
 
 use crate::{
-    known::{KnownObject, StandingPose, YawSymmetry},
+    known::{KnownObject, StandingPose},
     normal::LeastSquares,
     residual::{OUTLIER, Residual, TRIED, TriedFit, rows, square_of},
+    symmetry::YawSymmetry,
 };
 
 /// The parameters: along X and Y, along the ray from the eye, and about the vertical.

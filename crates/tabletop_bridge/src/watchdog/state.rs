@@ -1,0 +1,89 @@
+//! The states of a watchdog, and the reasons to stop a robot.
+
+use std::{fmt, time::Duration};
+
+/// What a watchdog does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WatchdogState {
+    /// It looks on and sends nothing.
+    Watching,
+    /// It passes on what the program wants.
+    Armed,
+    /// It brings the joints to rest.
+    Ramping(StopReason),
+    /// The robot stays where it is, and is no longer driven. Only a person starts it again.
+    Held(StopReason),
+}
+
+/// Why a robot is no longer driven.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StopReason {
+    /// The program is done with it.
+    Asked,
+    /// Its joints' states are old.
+    StaleState {
+        /// How old they are.
+        age: Duration,
+    },
+    /// Somebody or something has stopped it.
+    EmergencyStop,
+    /// Its motors are off.
+    Disabled,
+    /// A part of it is faulty.
+    RobotError,
+    /// The program has set no target for too long.
+    ProgramLate {
+        /// How long.
+        by: Duration,
+    },
+    /// This program was not running for too long.
+    WatchdogLate {
+        /// How long.
+        by: Duration,
+    },
+    /// A joint is not where it should be.
+    Deviation {
+        /// The joint.
+        joint: String,
+        /// How far it is from there, in rad.
+        by: f64,
+    },
+    /// The connection is lost; the robot stops by its own time limit.
+    Disconnected(String),
+}
+
+impl fmt::Display for StopReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ms = Duration::as_millis;
+        match self {
+            Self::Asked => f.write_str("the program is done"),
+            Self::StaleState { age } => {
+                write!(f, "the robot's joint states are {} ms old", ms(age))
+            }
+            Self::EmergencyStop => f.write_str("the robot is stopped: a person must reset it"),
+            Self::Disabled => f.write_str("the robot's motors are off"),
+            Self::RobotError => f.write_str("the robot reports an error"),
+            Self::ProgramLate { by } => write!(f, "the program set no target for {} ms", ms(by)),
+            Self::WatchdogLate { by } => write!(f, "this computer stood still for {} ms", ms(by)),
+            Self::Deviation { joint, by } => {
+                write!(f, "{joint} is {by:.2} rad from where it should be")
+            }
+            Self::Disconnected(why) => f.write_str(why),
+        }
+    }
+}
+
+impl StopReason {
+    /// True if the robot has already stopped by itself, so that commands make no sense.
+    pub(super) fn is_robot_at_rest(&self) -> bool {
+        match self {
+            Self::EmergencyStop | Self::Disabled | Self::Disconnected(_) => true,
+            Self::Asked
+            | Self::StaleState { .. }
+            | Self::RobotError
+            | Self::ProgramLate { .. }
+            | Self::WatchdogLate { .. }
+            | Self::Deviation { .. } => false,
+        }
+    }
+}
