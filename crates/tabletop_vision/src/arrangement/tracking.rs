@@ -17,7 +17,7 @@ struct TrackedMotion {
 
 /// What is known of an object's motion.
 #[derive(Default)]
-struct Track {
+struct TrackedObject {
     /// True if the object was looked at since something about it changed.
     is_looked_at: bool,
     /// The motion that is still to be made.
@@ -68,36 +68,36 @@ impl ObjectArrangement<'_, '_> {
     /// Moves what has moved. An object is explained badly where it was if it has moved, but also if what has moved hid it, or hides it now. So the motion that
     /// explains most comes first, and whatever that may have explained is looked at again.
     fn follow_motions(&mut self) {
-        let mut tracks: Vec<Track> = Vec::new();
-        tracks.resize_with(self.objects.len(), Track::default);
+        let mut tracked: Vec<TrackedObject> = Vec::new();
+        tracked.resize_with(self.objects.len(), TrackedObject::default);
         loop {
-            for (i, track) in tracks.iter_mut().enumerate() {
-                if !track.is_looked_at {
-                    track.is_looked_at = true;
-                    track.motion = self.motion(i);
-                    track
-                        .motion
-                        .take_if(|motion| track.has_moved && motion.gain < BETTER);
+            for (i, object) in tracked.iter_mut().enumerate() {
+                if !object.is_looked_at {
+                    object.is_looked_at = true;
+                    let motion = self.motion(i);
+                    object.motion =
+                        motion.filter(|motion| !object.has_moved || motion.gain >= BETTER);
                 }
             }
-            let open = tracks.iter_mut().enumerate();
-            let open = open.filter_map(|(i, track)| Some((i, track.motion.as_ref()?.gain, track)));
-            let Some((object, _, track)) = open.max_by(|one, other| one.1.total_cmp(&other.1))
+            let open = tracked.iter_mut().enumerate();
+            let open =
+                open.filter_map(|(i, object)| Some((i, object.motion.as_ref()?.gain, object)));
+            let Some((moved, _, object)) = open.max_by(|one, other| one.1.total_cmp(&other.1))
             else {
                 return;
             };
-            let Some(motion) = track.motion.take() else {
+            let Some(motion) = object.motion.take() else {
                 return;
             };
-            track.has_moved = true;
+            object.has_moved = true;
             for &(i, placement) in &motion.placements {
                 self.place(i, placement);
             }
-            for (i, track) in tracks.iter_mut().enumerate() {
-                let own = track.motion.as_ref().map(|motion| &motion.window);
+            for (i, object) in tracked.iter_mut().enumerate() {
+                let own = object.motion.as_ref().map(|motion| &motion.window);
                 let mut seen = self.windows[i].iter().chain(own);
                 if seen.any(|own| !own.intersection(&motion.window).is_empty()) {
-                    track.is_looked_at = i == object;
+                    object.is_looked_at = i == moved;
                 }
             }
         }
