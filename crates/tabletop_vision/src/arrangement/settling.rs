@@ -104,8 +104,10 @@ impl ObjectArrangement<'_, '_> {
             refinement.is_free = true;
             let (free, free_trial) = refinement.refined(here, &FINE);
             refinement.is_free = false;
+            // What is movable and in the way may be in the wrong place.
             let taken: Vec<_> = others
                 .clone()
+                .filter(|(other, _)| other.is_fixed())
                 .flat_map(|(other, placement)| other.touched(placement))
                 .collect();
             // What is not seen may be hidden between it and a support.
