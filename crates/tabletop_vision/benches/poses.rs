@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use bevy::math::Vec3;
 use scenes::{Difficulty, TASKS, TaskScene};
-use tabletop_vision::{Eyes, KnownScenery};
+use tabletop_vision::KnownScenery;
 
 /// Number of pictures in which an object is followed.
 const FRAMES: u32 = 40;
@@ -100,10 +100,7 @@ fn main() {
             let (mut errors, mut times) = (Vec::new(), Vec::new());
             for seed in 0..count {
                 let sample = task.sample(own, seed);
-                let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
-                if own.light > 0.0 {
-                    eyes = eyes.in_unknown_light();
-                }
+                let mut eyes = sample.eyes();
                 // The least of some times, since other programs run meanwhile.
                 let mut looks = (0..REPEATED).map(|_| {
                     eyes.forget();
@@ -158,7 +155,7 @@ fn main() {
 /// Follows the last object, which is lifted and carried, through pictures, and prints its largest error and the time of a picture.
 fn follow(task: &TaskScene) {
     let sample = task.sample(&EASY, 3);
-    let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+    let mut eyes = sample.eyes();
     eyes.look(&sample.picture, &KnownScenery::default());
     let mut poses = sample.poses.clone();
     let last = poses.len() - 1;

@@ -10,7 +10,7 @@ use scenes::{Difficulty, Sample, TASKS};
 use tabletop_camera::{Camera, DrawnSolid};
 use tabletop_core::Random;
 use tabletop_geometry::{Pose, Rgb, Solid, turn_about};
-use tabletop_vision::{Eyes, KnownScenery, Visibility, calibrated};
+use tabletop_vision::{KnownScenery, Visibility, calibrated};
 
 #[test]
 fn objects_of_every_task_are_seen_to_a_fiftieth_of_a_unit() {
@@ -24,7 +24,7 @@ fn objects_of_every_task_are_seen_to_a_fiftieth_of_a_unit() {
                     },
                     seed,
                 );
-                let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+                let mut eyes = sample.eyes();
                 let seen = eyes.look(&sample.picture, &KnownScenery::default());
                 for (object, error) in sample.errors(&seen).into_iter().enumerate() {
                     // What is hidden cannot be known.
@@ -45,7 +45,7 @@ fn objects_of_every_task_are_seen_to_a_fiftieth_of_a_unit() {
 #[test]
 fn an_object_that_is_carried_is_followed_and_its_height_is_seen() {
     let sample = TASKS[0].sample(&Difficulty::default(), 3);
-    let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+    let mut eyes = sample.eyes();
     let mut poses = sample.poses.clone();
     let start = poses[0].location;
     let mut largest = 0.0_f32;
@@ -71,7 +71,7 @@ fn an_object_that_is_carried_is_followed_and_its_height_is_seen() {
 
 /// Moves an object along a way, one step a picture. Everything else has to be seen where it stays, picture by picture.
 fn assert_others_stay(sample: &Sample, moved: usize, way: impl IntoIterator<Item = Vec3>) {
-    let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+    let mut eyes = sample.eyes();
     let mut seen = eyes.look(&sample.picture, &KnownScenery::default());
     let places: Vec<_> = sample.poses.iter().copied().map(Some).collect();
     eyes.name_by_place(&places, &mut seen);
@@ -159,10 +159,7 @@ fn rings_stand_on_the_foot_of_their_peg_and_not_in_it() {
     };
     for (name, difficulty, seed) in [("hanoi_rings", noise, 6), ("hanoi", light, 9)] {
         let sample = task(name).sample(&difficulty, seed);
-        let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
-        if difficulty.light > 0.0 {
-            eyes = eyes.in_unknown_light();
-        }
+        let mut eyes = sample.eyes();
         let seen = eyes.look(&sample.picture, &KnownScenery::default());
         for (object, error) in sample.errors(&seen).into_iter().enumerate() {
             assert!(error.length < 0.02, "{name} {object}: {error:?}");
@@ -192,10 +189,7 @@ fn what_is_wrong_in_a_hard_picture_is_not_sure() {
     {
         for seed in 0..3 {
             let sample = task.sample(difficulty, seed);
-            let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
-            if difficulty.light > 0.0 {
-                eyes = eyes.in_unknown_light();
-            }
+            let mut eyes = sample.eyes();
             let seen = eyes.look(&sample.picture, &KnownScenery::default());
             assert!(
                 (seen.noise - difficulty.noise).abs() < 2.0,
@@ -219,7 +213,7 @@ fn an_unknown_object_is_clutter() {
     let before = sample.picture.clone();
     // Only the first two blocks are known.
     sample.known.truncate(2);
-    let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+    let mut eyes = sample.eyes();
     let seen = eyes.look(&before, &KnownScenery::default());
     let clutter = &seen.clutter[0];
     assert_eq!(seen.clutter.len(), 1, "{:?}", seen.clutter);
@@ -232,7 +226,7 @@ fn an_unknown_object_is_clutter() {
 #[test]
 fn a_hidden_object_stays_where_it_was_last_seen() {
     let sample = TASKS[0].sample(&Difficulty::default(), 2);
-    let mut eyes = Eyes::new(sample.known.clone(), sample.camera, sample.table);
+    let mut eyes = sample.eyes();
     eyes.look(&sample.picture, &KnownScenery::default());
     // A board between the camera and the first block.
     let eye = sample.camera.pose.location;

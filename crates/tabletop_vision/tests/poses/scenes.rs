@@ -7,7 +7,7 @@ use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
 use tabletop_core::{HeadCamera, LIGHT, Light, ObjectSpec, Picture, Random, Shape, Table};
 use tabletop_geometry::{NAMED_COLORS, Pose, Rgb};
-use tabletop_vision::{KnownObject, YawSymmetry};
+use tabletop_vision::{Eyes, KnownObject, YawSymmetry};
 
 /// A task, of whose scenes pictures are taken.
 #[derive(Clone, Copy, Debug)]
@@ -108,6 +108,7 @@ pub struct Sample {
     /// The part of each object's pixels that others leave visible.
     pub visible: Vec<f32>,
     shapes: Vec<Shape>,
+    is_light_unknown: bool,
 }
 
 impl TaskScene {
@@ -179,6 +180,7 @@ impl TaskScene {
             .collect();
         camera.light = LIGHT;
         Sample {
+            is_light_unknown: difficulty.light > 0.0,
             looks: known
                 .iter()
                 .map(|one| {
@@ -369,6 +371,15 @@ pub struct PoseError {
 }
 
 impl Sample {
+    /// Eyes for the known objects, which have seen nothing yet.
+    pub fn eyes(&self) -> Eyes {
+        let eyes = Eyes::new(self.known.clone(), self.camera, self.table);
+        match self.is_light_unknown {
+            true => eyes.in_unknown_light(),
+            false => eyes,
+        }
+    }
+
     /// A picture of the known objects elsewhere.
     pub fn with_poses(&self, poses: &[Pose]) -> Picture {
         self.with_poses_and(poses, &[])
