@@ -10,7 +10,7 @@ use crate::{
     target::{Material, Target},
 };
 
-/// Largest size of a seed: most of the time would go into reading longer ones.
+/// Largest size of a shipped file to begin with: most of the time would go into reading longer ones.
 const LONGEST_SEED: usize = 20_000;
 
 /// Of how many inputs one begins as nothing.
@@ -64,14 +64,14 @@ impl Inputs {
 
 impl Texts {
     fn of(target: &str, material: &Material, folder: &Path) -> Result<Self, String> {
-        let own = folder.join("fuzz/corpus").join(target);
+        let read = |folder: PathBuf| {
+            let files = files(&folder, material.ending).into_iter();
+            files.filter_map(|file| fs::read(file).ok())
+        };
         let shipped = material.shipped.iter().map(|path| folder.join(path));
-        let mut corpus: Vec<Vec<u8>> = [own]
-            .into_iter()
-            .chain(shipped)
-            .flat_map(|folder| files(&folder, material.ending))
-            .filter_map(|file| fs::read(file).ok())
-            .filter(|bytes| bytes.len() <= LONGEST_SEED)
+        let shipped = shipped.flat_map(read);
+        let mut corpus: Vec<Vec<u8>> = read(folder.join("fuzz/corpus").join(target))
+            .chain(shipped.filter(|bytes| bytes.len() <= LONGEST_SEED))
             .collect();
         if corpus.is_empty() {
             let folder = folder.display();

@@ -12,6 +12,7 @@
 mod input;
 mod mutation;
 mod scenes;
+mod sets;
 mod supervisor;
 mod target;
 

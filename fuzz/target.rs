@@ -7,7 +7,7 @@ use std::{
 
 use bevy::math::DVec3;
 use tabletop::{
-    core::{LayoutFile, Reach, UrdfJoint},
+    core::{LayoutFile, Picture, Reach, UrdfJoint},
     dataset::import_recording,
     headless_app_with,
     kinematics::RobotModel,
@@ -22,7 +22,7 @@ use tabletop::{
     task::{Requirements, Task},
 };
 
-use crate::scenes;
+use crate::{scenes, sets};
 
 /// A target: a reader of something that a stranger may have written.
 pub struct Target {
@@ -60,8 +60,13 @@ const fn target(
     }
 }
 
+/// A target that is made of the files of its corpus.
+const fn of_set(name: &'static str, start: fn() -> Box<dyn FnMut(&[u8])>) -> Target {
+    target(name, start, &[], "", "set.txt")
+}
+
 impl Target {
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 28] = [
         target("task", || each(task), &["tablesetup"], ".xml", "task.txt"),
         target(
             "scenario",
@@ -107,6 +112,18 @@ impl Target {
             "session.txt",
         ),
         target("protocol", || each(protocol), &[], ".arrays", "mesh.txt"),
+        of_set("lerobot-info", || sets::lerobot("meta/info.json")),
+        of_set("lerobot-stats", || sets::lerobot("meta/stats.json")),
+        of_set("lerobot-tasks", || sets::lerobot("meta/tasks.parquet")),
+        of_set("lerobot-journal", || sets::lerobot("meta/.commit.json")),
+        of_set("lerobot-episodes", || sets::lerobot(sets::EPISODES)),
+        of_set("lerobot-frames", || sets::lerobot(sets::FRAMES)),
+        of_set("lerobot-video", || sets::lerobot(sets::VIDEO)),
+        of_set("rlds-info", || sets::rlds("dataset_info.json")),
+        of_set("rlds-features", || sets::rlds("features.json")),
+        of_set("rlds-records", || sets::rlds("set-train.tfrecord-00000")),
+        of_set("robomimic", sets::robomimic),
+        of_set("picture", || each(picture)),
         Self {
             name: "scene",
             start: scenes::start,
@@ -300,6 +317,13 @@ fn collada(bytes: &[u8]) {
 
 fn shape(bytes: &[u8]) {
     let _figure = read_shape(&String::from_utf8_lossy(bytes));
+}
+
+fn picture(bytes: &[u8]) {
+    if let Ok(picture) = Picture::from_png(bytes) {
+        let pixels = picture.width as usize * picture.height as usize;
+        assert_eq!(picture.rgb.len(), 3 * pixels);
+    }
 }
 
 /// Arrays that are written again if they can be read.

@@ -1,11 +1,16 @@
 //! The command line and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
 
+mod acting_policy;
 mod allowed_paths;
 mod arguments;
+mod benchmark;
+mod cameras;
 mod check;
+mod compare;
 mod completions;
 mod cut_off;
 mod dataset;
+mod demonstration;
 #[cfg(feature = "window")]
 mod display;
 mod duration;
@@ -13,22 +18,25 @@ mod edit;
 mod explain;
 mod export;
 mod failure;
-mod film_camera;
 mod hand_cameras;
 mod head_camera;
 mod imitate;
 mod import;
 mod init;
 mod jobs;
+mod judge;
 #[cfg(feature = "window")]
 mod keys;
 mod learn;
+mod list;
 mod man;
+mod meaning;
 mod multiply;
 mod number_run;
 mod output;
 mod picture_size;
 mod progress;
+mod quiet;
 mod range;
 mod real;
 mod recorded;
@@ -36,6 +44,7 @@ mod recordings;
 mod replay;
 mod report;
 mod require;
+mod result_file;
 mod robot;
 mod robot_options;
 mod run;
@@ -43,12 +52,18 @@ mod run_arguments;
 mod script;
 mod seed_range;
 mod seeds;
+mod sentinel;
+mod serve_policy;
 mod shard;
+mod shipped;
 mod soak;
+mod teach;
+mod tell;
 mod terminal;
 mod validate;
 mod variation_options;
 mod video;
+mod wait;
 mod watch;
 mod window;
 
@@ -56,7 +71,7 @@ use std::{ffi::OsString, process::ExitCode};
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
-pub use film_camera::camera as read_camera;
+pub use cameras::camera as read_camera;
 
 use failure::{Failure, WRONG_INPUT};
 use output::Output;
@@ -83,6 +98,10 @@ enum Command {
     Replay(replay::ReplayArgs),
     /// Print the task that a recording shows, step by step
     Explain(explain::ExplainArgs),
+    /// Compare two recordings: what they show, how long they are, and where the objects go
+    Compare(compare::CompareArgs),
+    /// List the recordings of folders: how long each is, and what it shows
+    List(list::ListArgs),
     /// Print the task that pictures show
     ///
     /// Shapes and colours of the objects are known; their places, the motions and the acts are seen in the pictures of the head camera alone. If the recording tells
@@ -92,10 +111,16 @@ enum Command {
     Require(require::RequireArgs),
     /// Let the robot imitate the task that a recording shows
     Imitate(imitate::ImitateArgs),
+    /// Do what sentences say, such as "Put every red block into the blue box.", by the hand or by the robot
+    Tell(Box<tell::TellArgs>),
+    /// Say what a few demonstrations mean, as a program such as "Put every red block into the blue box.", and what else they may mean
+    Teach(teach::TeachArgs),
     /// Make many demonstrations from one, with everything elsewhere: for training networks
     Multiply(multiply::MultiplyArgs),
     /// Learn a policy from one demonstration: from the head camera's picture to what is to be put where
     Learn(learn::LearnArgs),
+    /// Serve a policy to other programs, by openpi's protocol, until this one is ended
+    ServePolicy(serve_policy::ServePolicyArgs),
     /// Write recordings as a dataset that other tools read
     Export(export::ExportArgs),
     /// Make a video, an animation or a contact sheet of a recording
@@ -106,7 +131,7 @@ enum Command {
     Dataset(dataset::DatasetArgs),
     /// Make a recording of another's segments: left out, in another order, faster or slower
     Edit(edit::EditArgs),
-    /// Turn a recording of the original program into one of this program, for all commands but replay
+    /// Turn a recording of the original program into one of this program, for all commands but those that simulate it again
     Import(import::ImportArgs),
     /// Check task files and report every fault with its place
     Check(check::CheckArgs),
@@ -119,12 +144,21 @@ enum Command {
     ///
     /// Existing files that differ are never overwritten: then nothing is written, and they are named.
     Init(init::InitArgs),
+    /// List the task files, scenarios, scripts and robots inside the program, which every command finds by their paths
+    Shipped(shipped::ShippedArgs),
     /// Act at random, for hours, as a user could, and check the world after every tick
     Soak(soak::SoakArgs),
     /// Measure the physics beside closed-form results of mechanics; exit code 1 if one is missed by more than its limit
     ///
     /// Its table, its units and its experiments are explained in docs/validation.md.
     Validate(validate::ValidateArgs),
+    /// Teach task programs by demonstrations, and count how many are understood; or judge a policy: how often it does tasks with fixed beginnings
+    ///
+    /// Families of programs are explained in docs/task-programs.md; policies, tasks and results in docs/policies.md.
+    Benchmark(benchmark::BenchmarkArgs),
+    /// Bring a real robot to rest if the program that drives it is killed; started by that program
+    #[command(hide = true)]
+    Sentinel(sentinel::SentinelArgs),
     /// Print a script with which your shell completes commands and options
     ///
     /// For bash: tabletop completions bash > ~/.local/share/bash-completion/completions/tabletop
@@ -145,6 +179,7 @@ Examples:
                                                 perform a demonstration and record it
   tabletop replay demo --window                 watch the recording
   tabletop explain demo                         say what it shows
+  tabletop tell 'Put all blocks in a row.'       do what a sentence says
   tabletop multiply demo --count 100 --out many make a hundred of it, with everything elsewhere
   tabletop export many --to lerobot dataset     make a dataset of them that LeRobot reads
   tabletop video demo demo.mp4 --captions       make a video of the recording
@@ -170,11 +205,16 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Explain(args)) => explain::explain(&args),
+        Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::List(args)) => list::list(&args),
         Some(Command::Watch(args)) => watch::watch(&args),
         Some(Command::Require(args)) => require::require(&args),
         Some(Command::Imitate(args)) => imitate::run(&args),
+        Some(Command::Tell(args)) => tell::tell(&args),
+        Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::Multiply(args)) => multiply::run(&args),
         Some(Command::Learn(args)) => learn::run(&args),
+        Some(Command::ServePolicy(args)) => serve_policy::run(&args),
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Video(args)) => video::run(&args),
         Some(Command::Report(args)) => report::run(&args),
@@ -186,8 +226,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         #[cfg(feature = "window")]
         Some(Command::Keys(args)) => keys::list(&args),
         Some(Command::Init(args)) => init::init(&args),
+        Some(Command::Shipped(args)) => shipped::list(&args),
         Some(Command::Soak(args)) => soak::soak(&args),
         Some(Command::Validate(args)) => validate::validate(&args),
+        Some(Command::Benchmark(args)) => benchmark::benchmark(&args),
+        Some(Command::Sentinel(args)) => sentinel::run(&args),
         Some(Command::Completions(args)) => completions::completions(&args, &mut Cli::command()),
         Some(Command::Man) => man::man(Cli::command()),
         None => window::open(cli.window),

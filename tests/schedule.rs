@@ -11,6 +11,7 @@ use tabletop::{
     core::{OrderSystems, TickSystems},
     headless_app_with,
     prelude::*,
+    real::RealRobotPlugin,
     recorder::{RecorderPlugin, UnrecordedPlugin},
 };
 
@@ -30,7 +31,12 @@ fn the_order_of_a_tick_is_unambiguous() {
         .build()
         .disable::<RecorderPlugin>()
         .add(UnrecordedPlugin);
-    for mut app in [headless_app(), headless_app_with(without_recorder)] {
+    let beside_a_real_robot = TabletopSimPlugins.build().add(RealRobotPlugin::default());
+    for mut app in [
+        headless_app(),
+        headless_app_with(without_recorder),
+        headless_app_with(beside_a_real_robot),
+    ] {
         with_ambiguities_as_errors(&mut app);
         app.step(1);
         assert_eq!(app.world().resource::<SimTick>().0, 1);

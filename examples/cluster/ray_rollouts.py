@@ -30,10 +30,12 @@ class Rollouts:
         random = [np.random.default_rng(seed) for seed in padded]
         returns, going = np.zeros(count), np.ones(count, bool)
         while going.any():
-            actions = np.stack([it.uniform(-1, 1, self.many.single_action_space.shape) for it in random])
-            _, reward, done, cut, _ = self.many.step(actions)
-            returns += np.where(going, reward, 0)
-            going &= ~(done | cut)
+            rows = np.flatnonzero(going)
+            actions = np.stack([random[row].uniform(-1, 1, self.many.single_action_space.shape) for row in rows])
+            self.many.send(actions, rows)
+            _, reward, done, cut, info = self.many.recv(len(rows))
+            returns[info["env_id"]] += reward
+            going[info["env_id"]] = ~(done | cut)
         return {seed: float(returns[row]) for row, seed in enumerate(seeds)}
 
 

@@ -69,7 +69,7 @@ def main() -> None:
             with torch.no_grad():
                 action, log, _, value = agent.act(seen)
             state, reward, done, cut, info = many.step(action.numpy())
-            rows.append((seen, action, log, value, torch.as_tensor(reward), torch.as_tensor(done | cut).float()))
+            rows.append((seen, action, log, value, torch.as_tensor(reward, dtype=torch.float32), torch.as_tensor(done | cut).float()))
             seen = see(state)
             over, reached = over + int((done | cut).sum()), reached + int(done.sum())
         steps += LENGTH * ENVS

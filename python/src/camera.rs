@@ -5,15 +5,15 @@ use std::{fs::File, io::BufReader, path::Path};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _, ToPyArray as _};
 use pyo3::prelude::*;
 use tabletop::{
+    camera::{CameraSpec, SeenThing, Shot},
     cli::read_camera,
     core::Picture,
-    film::{FilmCamera, SeenThing, Shot},
 };
 
 use crate::error::refuse;
 
 /// The camera of a text, with pictures of this many columns and rows.
-pub fn camera(text: &str, (width, height): (u32, u32)) -> PyResult<FilmCamera> {
+pub fn camera(text: &str, (width, height): (u32, u32)) -> PyResult<CameraSpec> {
     let pixels = u64::from(width) * u64::from(height);
     let side = 1..=Picture::MOST_SIDE;
     if !side.contains(&width) || !side.contains(&height) || pixels > Picture::MOST_PIXELS {
@@ -23,7 +23,7 @@ pub fn camera(text: &str, (width, height): (u32, u32)) -> PyResult<FilmCamera> {
             Picture::MOST_PIXELS
         )));
     }
-    Ok(FilmCamera {
+    Ok(CameraSpec {
         size: Some([width, height]),
         ..read_camera(text).map_err(refuse)?
     })

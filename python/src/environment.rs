@@ -44,6 +44,11 @@ impl Environment {
         Ok((result.reward, result.is_success, result.is_truncated))
     }
 
+    /// Ends the recording of the episode, if there is one.
+    fn finish_recording(&mut self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.0.finish_recording()).map_err(raise)
+    }
+
     /// The state.
     fn state<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         let mut state = vec![0.0; self.0.state_layout().numbers()];
@@ -64,7 +69,8 @@ impl Environment {
     fn verdicts(&self) -> Vec<(Option<String>, [f32; 3], [f32; 3])> {
         let verdicts = self.0.verdicts();
         verdicts
-            .map(|(_, it)| {
+            .iter()
+            .map(|it| {
                 let gap = it.gap;
                 (
                     it.failure.clone(),
@@ -73,6 +79,12 @@ impl Environment {
                 )
             })
             .collect()
+    }
+
+    /// What is to be done in this episode, if it is said.
+    #[getter]
+    fn instruction(&self) -> Option<&str> {
+        self.0.instruction()
     }
 
     /// The numbers of an action.

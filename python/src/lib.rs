@@ -17,7 +17,7 @@ mod _tabletop {
 
     use numpy::PyArray3;
     use pyo3::prelude::*;
-    use tabletop::environment;
+    use tabletop::{environment, recorder::RecordingReader};
 
     #[pymodule_export]
     use crate::{
@@ -42,6 +42,18 @@ mod _tabletop {
     fn registered() -> Vec<String> {
         let tasks = environment::registered_tasks().into_iter();
         tasks.map(|task| task.name).collect()
+    }
+
+    /// The pictures of a recording, in order: segment, number, tick, file.
+    #[pyfunction]
+    fn recorded_frames(py: Python<'_>, folder: PathBuf) -> PyResult<Vec<(u32, u64, u64, PathBuf)>> {
+        let segments = py.detach(|| RecordingReader::open(folder)?.segments());
+        let segments = segments.map_err(crate::error::refuse)?.into_iter();
+        let frames = segments.flat_map(|segment| {
+            let frames = segment.frames.into_iter();
+            frames.map(move |it| (segment.number, it.number, it.tick.0, it.picture.path()))
+        });
+        Ok(frames.collect())
     }
 
     /// A picture of a recording: rows x columns x 3 numbers from 0 to 255.

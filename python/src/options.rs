@@ -33,6 +33,7 @@ pub struct Options {
     smooth: bool,
     ticks_per_step: u64,
     max_steps: u64,
+    record: Option<PathBuf>,
 }
 
 impl Options {
@@ -75,6 +76,7 @@ impl Options {
             is_smooth: self.smooth,
             ticks_per_step: self.ticks_per_step,
             most_steps: self.max_steps,
+            record: self.record,
         };
         Ok((task.map_err(raise)?, options))
     }

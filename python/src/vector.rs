@@ -2,11 +2,12 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use numpy::{PyArray1, PyArrayMethods as _, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray3, PyArrayMethods as _, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::{prelude::*, types::PyDict};
 use tabletop::environment::{Autoreset, VectorEnvironment, VectorResults};
 
 use crate::{
+    camera::rgb,
     error::{raise, refuse},
     options::Options,
 };
@@ -81,9 +82,9 @@ impl Vector {
         })
     }
 
-    /// Begins an episode in each.
-    fn reset(&self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
-        let done = py.detach(|| Ok::<_, PyErr>(self.get()?.reset(&seeds, goes_on)))?;
+    /// Begins an episode in those of these numbers, each with its seed.
+    fn reset(&self, py: Python<'_>, seeds: Vec<(usize, Option<u64>)>) -> PyResult<()> {
+        let done = py.detach(|| Ok::<_, PyErr>(self.get()?.reset_some(&seeds, goes_on)))?;
         done.map_err(|error| raise_unless_interrupted(py, error))
     }
 
@@ -131,6 +132,7 @@ impl Vector {
             successes,
             truncations,
             last,
+            ..
         } = vector.results();
         copy(into, "state", states)?;
         copy(into, "rgb", rgb)?;
@@ -141,6 +143,43 @@ impl Vector {
         copy(into, "last_state", &last.states)?;
         copy(into, "last_rgb", &last.rgb)?;
         copy(into, "last_depth", &last.depth)
+    }
+
+    /// What is not yet as it should be in each, and what was not at the end of those episodes that have ended in this step.
+    fn failures(&self) -> PyResult<[Vec<Vec<String>>; 2]> {
+        let vector = self.get()?;
+        let results = vector.results();
+        Ok([results.failures.clone(), results.last.failures.clone()])
+    }
+
+    /// What is to be done in each, and what was in those episodes that have ended in this step; empty if it is not said.
+    fn instructions(&self) -> PyResult<[Vec<String>; 2]> {
+        let vector = self.get()?;
+        let results = vector.results();
+        Ok([
+            results.instructions.clone(),
+            results.last.instructions.clone(),
+        ])
+    }
+
+    /// The pictures of all: rows x columns x 3.
+    fn pictures<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray3<u8>>>> {
+        let mut vector = self.get()?;
+        let numbers = 0..vector.len();
+        let pictures = numbers.map(|number| {
+            let environment = vector.environment(number).ok_or_else(|| {
+                refuse(format!("environment {number} is stepped; receive it first"))
+            })?;
+            let picture = py.detach(|| environment.picture()).map_err(raise)?;
+            rgb(py, picture)
+        });
+        pictures.collect()
+    }
+
+    /// Ends the recordings of the episodes.
+    fn finish_recordings(&self, py: Python<'_>) -> PyResult<()> {
+        let done = py.detach(|| Ok::<_, PyErr>(self.get()?.finish_recordings()))?;
+        done.map_err(raise)
     }
 
     /// Rows and columns of pictures.

@@ -14,6 +14,7 @@ import tabletop
 
 gymnasium = pytest.importorskip("gymnasium")
 from gymnasium.utils.env_checker import check_env  # noqa: E402
+from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 
 tabletop.gym.register()
 
@@ -72,6 +73,31 @@ def test_an_environment_of_ones_own():
         tabletop.make("Nothing")
     with pytest.raises(tabletop.Error, match="an action of 3 numbers, expected 5"):
         env.step(np.zeros(3))
+
+
+def test_an_instruction_is_drawn_and_followed():
+    env = gymnasium.make("tabletop/Instruction-v0", action="pick_place", goals=True, disable_env_checker=True)
+    said, followed = set(), 0
+    for seed in range(8):
+        seen, info = env.reset(seed=seed)
+        instruction = info["instruction"]
+        assert env.reset(seed=seed)[1]["instruction"] == instruction
+        said.add(instruction)
+        done = False
+        for _ in range(12):
+            achieved, desired = (seen[name].reshape(-1, 3) for name in ("achieved_goal", "desired_goal"))
+            moved = np.flatnonzero(np.linalg.norm(achieved - desired, axis=1) > 0.05)
+            if done or not len(moved):
+                break
+            # What others are put on comes first.
+            next = min(moved, key=lambda number: desired[number, 2])
+            places = [achieved[next, 0] / 10, achieved[next, 1] / 6, desired[next, 0] / 10, desired[next, 1] / 6, 0]
+            seen, _, done, _, info = env.step(np.array(places, np.float32))
+            assert info["instruction"] == instruction
+        followed += done
+    assert len(said) > 4 and followed >= 7, (said, followed)
+    _, info = tabletop.make("StackThree").reset(seed=0)
+    assert "instruction" not in info
 
 
 def rollout(seed, steps=30, **options):
@@ -148,6 +174,163 @@ def test_a_row_of_a_vector_is_the_single_environment():
         seen, reward, *_ = many.step(actions)
         alone, single, *_ = one.step(actions[1])
         assert reward[1] == np.float32(single)
+
+
+MODES = ["next_step", "same_step", "disabled"]
+
+
+def pair(mode, count=3, name="StackThree", **options):
+    """Many environments of this package, and as many of Gymnasium's over single ones."""
+    ours = tabletop.make_vec(name, count, autoreset_mode=mode, **options)
+    make = lambda: tabletop.make(name, **options)  # noqa: E731
+    return ours, SyncVectorEnv([make] * count, autoreset_mode=AutoresetMode[mode.upper()])
+
+
+def assert_same(ours, theirs, where):
+    assert type(ours) is type(theirs), where
+    if isinstance(ours, dict):
+        assert ours.keys() == theirs.keys(), where
+        for name in ours:
+            assert_same(ours[name], theirs[name], f"{where}: {name}")
+    elif isinstance(ours, (tuple, list)):
+        assert len(ours) == len(theirs), where
+        for number, (our, their) in enumerate(zip(ours, theirs)):
+            assert_same(our, their, f"{where}[{number}]")
+    elif isinstance(ours, np.ndarray) and ours.dtype == object:
+        assert_same(list(ours), list(theirs), where)
+    elif isinstance(ours, np.ndarray):
+        assert ours.dtype == theirs.dtype, where
+        np.testing.assert_array_equal(ours, theirs, where)
+    else:
+        assert ours == theirs, where
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"goals": True},
+        {"observation": "rgb"},
+        {"observation": "rgbd", "reward": "sparse"},
+        {"action": "pick_place"},
+        {"name": "Instruction", "action": "pick_place"},
+    ],
+    ids=str,
+)
+def test_many_are_what_gymnasium_makes_of_single_ones(mode, options):
+    ours, theirs = pair(mode, size=(16, 12), max_steps=3, render_mode="rgb_array", **options)
+    for name in "observation_space", "action_space", "single_observation_space", "single_action_space":
+        assert getattr(ours, name) == getattr(theirs, name)
+    # Many have no window.
+    assert ours.metadata == {**theirs.metadata, "render_modes": ["rgb_array"]} and ours.render_mode == theirs.render_mode
+    assert_same(ours.reset(seed=4), theirs.reset(seed=4), "reset")
+    ours.action_space.seed(0)
+    reset = 0
+    for step in range(9):
+        actions = ours.action_space.sample()
+        results = ours.step(actions)
+        assert_same(results, theirs.step(actions), f"step {step}")
+        assert_same(ours.render(), theirs.render(), f"picture {step}")
+        over = results[2] | results[3]
+        masks = []
+        if mode == "disabled" and over.any():
+            masks.append(over)
+        if step in (1, 4, 7):
+            masks.append(np.array([True, False, step == 4]))
+        for mask in masks:
+            reset += 1
+            seeds = [step, None, 7]
+            both = [many.reset(seed=seeds, options={"reset_mask": mask.copy()}) for many in (ours, theirs)]
+            assert_same(*both, f"reset {step}")
+    assert reset >= 3
+
+
+def test_only_the_masked_environments_are_reset():
+    many = tabletop.make_vec("StackThree", 3, autoreset_mode="disabled", max_steps=50)
+    many.reset(seed=1)
+    for _ in range(3):
+        seen, *_ = many.step(np.full(many.action_space.shape, 0.3, np.float32))
+    after, infos = many.reset(options={"reset_mask": np.array([True, False, False])})
+    assert [bool((seen[row] != after[row]).any()) for row in range(3)] == [True, False, False]
+    assert infos["_is_success"].tolist() == [True, False, False]
+    for mask, words in [
+        (np.array([1, 0, 0]), "expected 3 booleans, found numbers of type int64"),
+        (np.array([True, False]), "expected 3 booleans"),
+        (np.zeros(3, bool), "at least one"),
+    ]:
+        with pytest.raises(tabletop.Error, match=f"reset_mask: .*{words}"):
+            many.reset(options={"reset_mask": mask})
+    with pytest.raises(tabletop.Error, match="expected reset_mask, found mask"):
+        many.reset(options={"mask": np.ones(3, bool)})
+    with pytest.raises(tabletop.Error, match="expected none, found reset_mask"):
+        tabletop.make("StackThree").reset(options={"reset_mask": np.ones(1, bool)})
+
+
+def test_environments_without_seeds_begin_differently():
+    many = tabletop.make_vec("StackThree", 3)
+    mask = np.array([True, True, False])
+    first, _ = many.reset(options={"reset_mask": mask})
+    second, _ = many.reset(options={"reset_mask": ~mask})
+    rows = [first[0], first[1], second[2]]
+    assert all((rows[one] != rows[other]).any() for one, other in [(0, 1), (0, 2), (1, 2)])
+
+
+def test_what_is_no_action_is_refused():
+    one = tabletop.make("StackThree")
+    with pytest.raises(tabletop.Error, match="no episode has begun; reset it first"):
+        one.step(np.zeros(16))
+    one.reset(seed=0)
+    action = np.zeros(16)
+    action[5] = np.nan
+    with pytest.raises(tabletop.Error, match="number 5 of the action, from 0, is NaN"):
+        one.step(action)
+    action[5] = np.inf
+    one.step(action)
+    many = tabletop.make_vec("StackThree", 3, autoreset_mode="disabled", max_steps=2)
+    with pytest.raises(tabletop.Error, match="environment 0: no episode has begun"):
+        many.step(np.zeros((3, 16)))
+    before, _ = many.reset(seed=0)
+    actions = np.zeros((3, 16))
+    actions[2, 4] = np.nan
+    with pytest.raises(tabletop.Error, match="environment 2: number 4 of the action"):
+        many.step(actions)
+    with pytest.raises(tabletop.Error, match=r"expected actions of the shape \(3, 16\), found \(16, 3\)"):
+        many.step(np.zeros((16, 3)))
+    with pytest.raises(tabletop.Error, match="environment 1 is named twice"):
+        many.send(np.zeros((2, 16)), [1, 1])
+    for _ in range(2):
+        many.step(np.zeros((3, 16)))
+    with pytest.raises(tabletop.Error, match="environment 0: its episode is over; reset it first"):
+        many.step(np.zeros((3, 16)))
+
+
+def test_what_is_received_has_the_infos_of_its_rows():
+    many = tabletop.make_vec("StackThree", 4, autoreset_mode="same_step", max_steps=2)
+    many.reset(seed=0)
+    actions = np.zeros((4, 16), np.float32)
+    many.step(actions)
+    many.send(actions[:2], [3, 1])
+    seen, reward, done, cut, info = many.recv(2)
+    assert cut.all() and len(seen) == 2 and sorted(info["env_id"]) == [1, 3]
+    assert all(len(info[name]) == 2 for name in ("is_success", "failures", "final_obs"))
+    assert info["_final_obs"].all() and all(info["final_info"]["failures"]) and not info["is_success"].any()
+
+
+def test_the_reward_of_goals_is_what_hindsight_computes():
+    one = tabletop.make("StackThree", goals=True)
+    seen, _ = one.reset(seed=0)
+    for _ in range(5):
+        seen, reward, *_ = one.step(np.full(16, 0.2))
+        assert reward == one.compute_reward(seen["achieved_goal"], seen["desired_goal"], {})
+    with pytest.raises(tabletop.Error, match="goals: expected reward distance"):
+        tabletop.make("StackThree", goals=True, reward="sparse")
+
+
+@pytest.mark.parametrize("ticks, fps", [(1, 60), (3, 20), (12, 5), (7, 60 / 7)])
+def test_pictures_are_as_many_a_second_as_steps(ticks, fps):
+    for env in tabletop.make("StackThree", ticks_per_step=ticks), tabletop.make_vec("StackThree", 2, ticks_per_step=ticks):
+        assert env.metadata["render_fps"] == fps and type(env.metadata["render_fps"]) is type(fps)
 
 
 def test_environments_are_sent_and_received_as_they_are_ready():
@@ -240,3 +423,14 @@ def test_stable_baselines_finds_no_fault():
             warnings.simplefilter("ignore")
             checker.check_env(tabletop.make(name), warn=False)
     checker.check_env(tabletop.make("StackThree", observation="rgb"), warn=False)
+
+
+def test_episodes_are_recorded(tmp_path):
+    env = tabletop.make("StackThree", action="pick_place", record=tmp_path / "episodes")
+    for _ in range(2):
+        env.reset(seed=1)
+        env.step(np.zeros(env.action_space.shape, np.float32))
+    env.close()
+    episodes = sorted((tmp_path / "episodes").iterdir())
+    assert [episode.name for episode in episodes] == ["000000", "000001"]
+    assert all(list(tabletop.Recording(episode).frames()) for episode in episodes)

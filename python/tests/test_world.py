@@ -39,7 +39,7 @@ def test_errors_are_those_of_the_command_line():
     world = tabletop.World(SETUP)
     with pytest.raises(tabletop.Error, match="Nothing"):
         world.grasp("Nothing")
-    with pytest.raises(tabletop.Error, match="Unexpected variant named `Jump`"):
+    with pytest.raises(tabletop.Error, match="there is no Jump"):
         world.command("Jump")
     with pytest.raises(tabletop.Error, match="missing.xml"):
         tabletop.World("missing.xml")
@@ -140,6 +140,36 @@ def test_a_world_is_recorded_saved_and_opened_again(tmp_path):
         tabletop.Recording(tmp_path)
 
 
+def test_a_recording_is_read_as_it_is_written(tmp_path):
+    file = tmp_path / "two.xml"
+    file.write_text(
+        """<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">
+        <block id="1" location="(2,0,1)"><description name="label" value="a &quot;red&quot; one, small"/></block>
+        <block id="2" location="(-2,0,1)"/></tabletop>"""
+    )
+    world = tabletop.World(file)
+    with world.record(tmp_path / "demo"):
+        world.step(100)
+        world.grasp("1")
+        world.glide((-2, 0, 4))
+        world.release()
+        world.step(7)
+    recording = tabletop.Recording(tmp_path / "demo")
+    events = recording.events()
+    assert [(segment, it[1:]) for segment, it in events if it[1] == "grasp"] == [(1, ["grasp", "AnyHand", "1"])]
+    assert any(it[1:5] == ["create", "1", "shape", "block"] and 'a "red" one, small' in it for _, it in events)
+    assert events[0][0] == 0 and {segment for segment, _ in events} == {0, 1, 2}
+    start, last = recording.header["start_tick"], max(recording.states()["tick"])
+    frames = list(recording.frames())
+    files = [it for it in (tmp_path / "demo").glob("*/*.png") if it.stem.isdigit()]
+    assert sorted(it.path for it in frames) == sorted(files)
+    assert all(it.path == tmp_path / "demo" / str(it.segment) / f"{it.number}.png" for it in frames)
+    # Frames in which nothing moves have no picture.
+    assert [it.number for it in frames] != list(range(len(frames)))
+    assert [it.tick for it in frames] == [min(start + 15 * it.number, last) for it in frames]
+    assert set(recording.states()["id"]) == {"1", "2"}
+
+
 def test_a_recording_after_a_restored_moment_replays(tmp_path):
     world = tabletop.World(SETUP)
     moment = world.snapshot()
@@ -174,6 +204,17 @@ def test_the_robot_imitates_and_multiplies(tmp_path):
         tmp_path / "demo", tmp_path / "many", count=3, colors=True, progress=lambda *it: seen.append(it)
     )
     assert [folder.name for folder in made] == ["0000", "0001", "0002"] and seen[-1] == (3, 3)
+
+
+def test_it_understands_what_it_was_told(tmp_path):
+    said = "Put every block into the box."
+    told = tabletop.tell(said, setup="shipped:tablesetup/small-blocks.xml", record=tmp_path / "demo")
+    assert told.done == 0, told.report  # There is no box.
+    told = tabletop.tell("Swap Red and Green.", setup="shipped:tablesetup/blocks.xml", record=tmp_path / "swap")
+    assert (told.done, told.trials) == (1, 1), told.report
+    taught = tabletop.teach(tmp_path / "swap")
+    assert taught["sentences"].startswith("Swap "), taught
+    assert taught["program"]["sentences"] and isinstance(taught["alternatives"], list)
 
 
 def test_it_says_what_it_is():

@@ -2,7 +2,7 @@
 
 use std::{ffi::OsString, process::ExitCode};
 
-use clap::{Error, Parser, builder::Styles};
+use clap::{ArgMatches, Error, Parser, builder::Styles, error::ErrorKind};
 
 use super::{failure::WRONG_INPUT, terminal::say};
 
@@ -13,12 +13,31 @@ pub(super) fn read<Line: Parser>(
     let arguments: Vec<_> = arguments.into_iter().collect();
     // Without colours, a refusal has no other escape sequences than those of the arguments.
     let uncoloured = Line::command().styles(Styles::plain());
-    let read = uncoloured.try_get_matches_from(&arguments);
-    let read = read.and_then(|matches| Line::from_arg_matches(&matches));
+    let read = uncoloured.clone().try_get_matches_from(&arguments);
+    let read = read.and_then(|matches| match meant_line(&matches, &arguments) {
+        Some(line) => Err(uncoloured.clone().error(
+            ErrorKind::ArgumentConflict,
+            format!("options of a command come after it: {line}"),
+        )),
+        None => Line::from_arg_matches(&matches),
+    });
     read.map_err(|answer| match answer.use_stderr() {
         true => refuse(&answer),
         false => help::<Line>(&arguments),
     })
+}
+
+/// The line that was meant by one with options before its command, which would be those of the window.
+fn meant_line(matches: &ArgMatches, arguments: &[OsString]) -> Option<String> {
+    let command = matches.subcommand_name()?;
+    let place = arguments.iter().position(|argument| argument == command)?;
+    let (before, after) = (arguments.get(1..place)?, &arguments[place..]);
+    if before.is_empty() {
+        return None;
+    }
+    let words = after.iter().chain(before);
+    let words: Vec<_> = words.map(|word| word.to_string_lossy()).collect();
+    Some(format!("tabletop {}", words.join(" ")))
 }
 
 fn refuse(refusal: &Error) -> ExitCode {

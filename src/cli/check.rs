@@ -50,7 +50,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
             scene_dump::write_dump(&task.scene, &mut json).map_err(Failure::run)?;
             Output::Stdout.write(&json)?;
         } else if task.faults.is_empty() {
-            Output::Stdout.write(format!("{}: ok\n", file.display()).as_bytes())?;
+            Output::tell(&format!("{}: ok\n", file.display()))?;
         }
     }
     Ok(match sound {

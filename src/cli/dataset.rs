@@ -1,17 +1,30 @@
 //! `tabletop dataset`: folders of recordings and LeRobot datasets.
 
-use std::{collections::BTreeSet, path::PathBuf, process::ExitCode};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use crate::dataset::{
     CheckOptions, DatasetFolder, DatasetPart, DatasetSummary, check, divide, merge, repair,
     statistics, summarize, trim, write_card,
 };
+use crate::{export::LeRobotRepair, storage::InnerPath};
 use clap::{Args, Subcommand};
 
 use super::{
-    Failure, Output, import::failed, number_run::run_of, progress::ProgressLine,
-    terminal::show_warnings,
+    Failure, Output,
+    import::failed,
+    number_run::run_of,
+    progress::ProgressLine,
+    result_file::require_outside,
+    terminal::{in_line, show_warnings},
+    wait::WaitOption,
 };
+
+/// Letters of a name that a table shows.
+const MOST_LETTERS: usize = 80;
 
 #[derive(Args)]
 pub(super) struct DatasetArgs {
@@ -28,7 +41,7 @@ enum DatasetAction {
     /// Check every file against its neighbours, and look for duplicates, jumps and tasks that do not last; exit code 1 if there are any
     Check(DatasetCheckArgs),
     /// End or take back what a killed export has left in a LeRobot dataset
-    Repair(DatasetPlace),
+    Repair(ChangedPlace),
     /// Make one dataset of several of one kind
     Merge(MergeArgs),
     /// Divide a dataset
@@ -38,7 +51,7 @@ enum DatasetAction {
     /// Make a dataset without the still beginnings and ends of another's episodes
     Trim(TrimArgs),
     /// Write a README.md for a hub into the dataset, with pictures
-    Card(DatasetPlace),
+    Card(ChangedPlace),
 }
 
 #[derive(Args)]
@@ -46,6 +59,15 @@ struct DatasetPlace {
     /// A recording, a folder of recordings, or a LeRobot dataset
     #[arg(value_name = "DIR")]
     dataset: PathBuf,
+}
+
+/// A dataset that gets files.
+#[derive(Args)]
+struct ChangedPlace {
+    #[command(flatten)]
+    place: DatasetPlace,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 #[derive(Args)]
@@ -65,6 +87,8 @@ struct MergeArgs {
     /// The folder of the new dataset
     #[arg(long, value_name = "OUT")]
     out: PathBuf,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 #[derive(Args)]
@@ -77,6 +101,8 @@ struct SplitArgs {
     /// The parts with their shares, such as train=9,valid=1. Every part gets episodes from everywhere in the dataset
     #[arg(long, value_name = "NAME=SHARE,…", value_parser = share, value_delimiter = ',', required = true)]
     into: Vec<(String, u32)>,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 #[derive(Args)]
@@ -89,6 +115,8 @@ struct DropArgs {
     /// The episodes that are left out, from 0, separated by commas: each a number or a run, such as 3 or 5-6
     #[arg(long, value_name = "N,…", value_parser = run_of, value_delimiter = ',', required = true)]
     episodes: Vec<std::ops::RangeInclusive<u32>>,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 #[derive(Args)]
@@ -98,6 +126,8 @@ struct TrimArgs {
     /// The folder of the new dataset
     #[arg(value_name = "OUT")]
     out: PathBuf,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 impl DatasetPlace {
@@ -113,29 +143,35 @@ pub(super) fn run(args: &DatasetArgs) -> Result<ExitCode, Failure> {
         DatasetAction::Info(place) => described(&summarize(&place.open()?).map_err(failed)?),
         DatasetAction::Stats(place) => table(&place.open()?)?,
         DatasetAction::Check(args) => return checked(args),
-        DatasetAction::Repair(place) => repaired(place)?,
+        DatasetAction::Repair(changed) => repaired(changed)?,
         DatasetAction::Merge(args) => {
+            let read: Vec<_> = args.datasets.iter().map(PathBuf::as_path).collect();
+            require_outside(&args.out, &read)?;
             let datasets: Result<Vec<_>, _> = args
                 .datasets
                 .iter()
                 .map(|it| DatasetFolder::open(it))
                 .collect();
-            let episodes = merge(&datasets.map_err(failed)?, &args.out).map_err(failed)?;
+            let datasets = datasets.map_err(failed)?;
+            let episodes = merge(&datasets, &args.out, &args.wait.storage()).map_err(failed)?;
             format!("{episodes} episodes.\n")
         }
         DatasetAction::Split(args) => split(args)?,
         DatasetAction::Drop(args) => drop_episodes(args)?,
         DatasetAction::Trim(args) => {
-            let trimmed = trim(&args.place.open()?, &args.out).map_err(failed)?;
+            require_outside(&args.out, &[&args.place.dataset])?;
+            let dataset = args.place.open()?;
+            let trimmed = trim(&dataset, &args.out, &args.wait.storage()).map_err(failed)?;
             let (episodes, frames) = (trimmed.episodes, trimmed.frames);
             format!("{episodes} episodes, {frames} frames cut off.\n")
         }
-        DatasetAction::Card(place) => {
-            let card = write_card(&place.open()?).map_err(failed)?;
+        DatasetAction::Card(changed) => {
+            let dataset = changed.place.open()?;
+            let card = write_card(&dataset, &changed.wait.storage()).map_err(failed)?;
             format!("{}\n", card.display())
         }
     };
-    Output::Stdout.write(said.as_bytes())?;
+    Output::tell(&said)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -151,9 +187,10 @@ fn described(summary: &DatasetSummary) -> String {
         bytes,
         imported,
         cut_off,
+        contradiction,
     } = summary;
     let list = |items: &BTreeSet<String>| {
-        let items: Vec<_> = items.iter().map(String::as_str).collect();
+        let items: Vec<_> = items.iter().map(|item| in_line(item)).collect();
         format!("{} ({})", items.len(), items.join(", "))
     };
     let mut lines = vec![
@@ -170,23 +207,28 @@ fn described(summary: &DatasetSummary) -> String {
             lines.push(format!("{what:<9} {count}"));
         }
     }
+    lines.extend(contradiction.iter().map(|it| format!("wrong     {it}")));
     lines.push(format!("tasks     {}", tasks.len()));
     lines.extend(tasks.iter().map(|(task, count)| match count {
-        Some(count) => format!("  {count:>6}  {task}"),
-        None => format!("  {task}"),
+        Some(count) => format!("  {count:>6}  {}", in_line(task)),
+        None => format!("  {}", in_line(task)),
     }));
     lines.join("\n") + "\n"
 }
 
 fn table(dataset: &DatasetFolder) -> Result<String, Failure> {
     let statistics = statistics(dataset).map_err(failed)?;
-    let width = statistics.keys().map(|name| name.chars().count()).max();
+    let named = statistics
+        .iter()
+        .map(|(name, number)| (column_of(name), number));
+    let named: Vec<_> = named.collect();
+    let width = named.iter().map(|(name, _)| name.chars().count()).max();
     let width = width.unwrap_or(0);
     let mut text = format!(
         "{:<width$} {:>9} {:>12} {:>12} {:>12} {:>12}\n",
         "", "count", "min", "mean", "max", "std"
     );
-    for (name, number) in &statistics {
+    for (name, number) in named {
         text += &format!(
             "{name:<width$} {:>9} {:>12.4} {:>12.4} {:>12.4} {:>12.4}\n",
             number.count,
@@ -197,6 +239,15 @@ fn table(dataset: &DatasetFolder) -> Result<String, Failure> {
         );
     }
     Ok(text)
+}
+
+/// The name of a number in a table, which is not wider for it than a screen.
+fn column_of(name: &str) -> String {
+    let name = in_line(name);
+    match name.char_indices().nth(MOST_LETTERS) {
+        Some((end, _)) => format!("{}…", &name[..end]),
+        None => name.into_owned(),
+    }
 }
 
 fn checked(args: &DatasetCheckArgs) -> Result<ExitCode, Failure> {
@@ -211,23 +262,33 @@ fn checked(args: &DatasetCheckArgs) -> Result<ExitCode, Failure> {
     let findings = findings.map_err(failed)?;
     let mut text: String = findings
         .iter()
-        .map(|finding| format!("{finding}\n"))
+        .map(|finding| in_line(&finding.to_string()).into_owned() + "\n")
         .collect();
     let count = findings.len();
     text += &match count {
         0 => format!("{episodes} episodes, nothing wrong.\n"),
         _ => format!("{episodes} episodes, {count} faults.\n"),
     };
-    Output::Stdout.write(text.as_bytes())?;
+    Output::tell(&text)?;
     Ok(ExitCode::from(u8::from(count > 0)))
 }
 
-fn repaired(place: &DatasetPlace) -> Result<String, Failure> {
-    let repair = repair(&place.dataset).map_err(failed)?;
-    let mut text = match repair.export {
-        Some(export) => format!("{export}; that is made up for.\n"),
-        None => "Nothing to repair.\n".to_owned(),
-    };
+fn repaired(changed: &ChangedPlace) -> Result<String, Failure> {
+    let repair = repair(&changed.place.dataset, &changed.wait.storage()).map_err(failed)?;
+    let LeRobotRepair {
+        export,
+        is_recounted,
+        ..
+    } = repair.lerobot;
+    let mut text = export.map_or_else(String::new, |export| {
+        format!("{export}; that is made up for.\n")
+    });
+    if is_recounted {
+        text += "Totals or statistics were not those of the tables; they are counted anew.\n";
+    }
+    if text.is_empty() {
+        text += "Nothing to repair.\n";
+    }
     for recording in repair.cut_off {
         let recording = recording.display();
         text += &format!(
@@ -251,6 +312,7 @@ fn share(text: &str) -> Result<(String, u32), String> {
 }
 
 fn split(args: &SplitArgs) -> Result<String, Failure> {
+    require_outside(&args.out, &[&args.place.dataset])?;
     let dataset = args.place.open()?;
     let names: BTreeSet<_> = args.into.iter().map(|(name, _)| name).collect();
     if names.len() != args.into.len() {
@@ -260,7 +322,7 @@ fn split(args: &SplitArgs) -> Result<String, Failure> {
         .into
         .iter()
         .map(|(name, _)| DatasetPart {
-            name: Some(name.clone()),
+            name: InnerPath::name(name).ok(),
             ..DatasetPart::default()
         })
         .collect();
@@ -276,15 +338,17 @@ fn split(args: &SplitArgs) -> Result<String, Failure> {
             parts[place].episodes.insert(episode);
         }
     }
-    divide(&[dataset], &args.out, &parts).map_err(failed)?;
+    divide(&[dataset], &args.out, &parts, &args.wait.storage()).map_err(failed)?;
     let lines = parts.iter().map(|part| {
-        let name = part.name.as_deref().unwrap_or_default();
+        let name = part.name.as_ref().map(InnerPath::as_path);
+        let name = name.unwrap_or(Path::new("")).display();
         format!("{name}: {} episodes.\n", part.episodes.len())
     });
     Ok(lines.collect())
 }
 
 fn drop_episodes(args: &DropArgs) -> Result<String, Failure> {
+    require_outside(&args.out, &[&args.place.dataset])?;
     let dataset = args.place.open()?;
     let all = dataset.episodes();
     let dropped: BTreeSet<_> = args.episodes.iter().cloned().flatten().collect();
@@ -301,6 +365,6 @@ fn drop_episodes(args: &DropArgs) -> Result<String, Failure> {
         episodes: episodes.collect(),
     };
     let count = rest.episodes.len();
-    divide(&[dataset], &args.out, &[rest]).map_err(failed)?;
+    divide(&[dataset], &args.out, &[rest], &args.wait.storage()).map_err(failed)?;
     Ok(format!("{count} episodes.\n"))
 }

@@ -3,8 +3,9 @@
 use std::{collections::BTreeSet, ops::RangeInclusive, path::PathBuf, process::ExitCode};
 
 use crate::{
-    recorder::RecorderPlugin,
+    recorder::{RecorderPlugin, whole_recording},
     replay::{Replay, SegmentEdit},
+    storage::Storage,
     task::Requirements,
 };
 use bevy::prelude::default;
@@ -15,8 +16,10 @@ use super::{
     allowed_paths::AllowedPaths,
     cut_off::say_if_cut_off,
     number_run::run_of,
+    quiet::QuietOption,
     range::NumberRange,
     recorded::say_moved_aside,
+    result_file::require_outside,
     terminal::{say, show_warnings},
 };
 
@@ -47,6 +50,8 @@ pub(super) struct EditArgs {
     splice: Vec<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
 /// Numbers of segments.
@@ -59,6 +64,7 @@ type Retime = (u32, f64);
 /// Records the edited recording.
 pub(super) fn run(args: &EditArgs) -> Result<ExitCode, Failure> {
     show_warnings();
+    require_outside(&args.out, &[&args.recording])?;
     let replay = Replay::read_allowing(&args.recording, &args.allowed.folders);
     let replay = replay.map_err(Failure::input)?;
     say_if_cut_off(replay.recording(), "edited");
@@ -81,12 +87,16 @@ pub(super) fn run(args: &EditArgs) -> Result<ExitCode, Failure> {
         ));
     }
     let edited = replay.edited(&edits).map_err(Failure::run)?;
-    let recorder = RecorderPlugin {
-        folder: args.out.clone(),
-        ..default()
-    };
-    let report = edited.record(recorder, replay.camera());
-    say_moved_aside(&report.map_err(Failure::run)?);
+    let (_, moved_aside) = whole_recording(&args.out, &Storage::default(), |folder| {
+        let recorder = RecorderPlugin {
+            folder: folder.to_owned(),
+            ..default()
+        };
+        let recorded = edited.record(recorder, replay.camera());
+        recorded.map_err(Failure::run)
+    })?;
+    args.quiet.sum_up_recording(&args.out);
+    say_moved_aside(&moved_aside);
     let requirements = args.recording.join(Requirements::FILE);
     if requirements.exists() {
         say(format_args!(

@@ -6,17 +6,21 @@ use std::{
 };
 
 use crate::{
-    assembly::{IdAllocator, assemble},
-    recorder::{RecorderError, RecordingReader, TICKS_PER_FRAME, read_original},
+    program::{Example, Meaning},
+    scene::{IdAllocator, assemble},
     shipped::read_faultless_task,
     task::{Demonstration, DetourKind, Furniture, Requirements, Role, Task, TaskStep},
 };
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
 
 use super::{
-    Failure, Output, allowed_paths::AllowedPaths, cut_off::say_if_cut_off, terminal::show_warnings,
+    Failure, Output,
+    allowed_paths::AllowedPaths,
+    demonstration::read_demonstration,
+    meaning::{not_moved, told},
+    terminal::show_warnings,
 };
 
 #[derive(Args)]
@@ -27,6 +31,10 @@ pub(super) struct ExplainArgs {
     /// Print everything that is known of the task as JSON
     #[arg(long)]
     json: bool,
+    /// Print what the demonstration means beyond its steps, as a program (docs/task-programs.md), and what else it may mean; its steps if that is all.
+    /// Objects like those that were moved which were not are named
+    #[arg(long, conflicts_with_all = ["json", "setup"])]
+    program: bool,
     /// Print which objects of this task file take the roles; exit code 1 if none fit
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
@@ -44,7 +52,12 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
         None => None,
     };
     let furniture = scene.as_ref().map(furniture).unwrap_or_default();
-    let (task, requirements) = read(&args.recording, &furniture)?;
+    let shown = read_demonstration(&args.recording, &furniture).map_err(Failure::input)?;
+    let (task, requirements) = understood(&shown, &args.recording)?;
+    if args.program {
+        let lines = program(&shown, &task).unwrap_or_else(|| steps(&shown, &task));
+        return print(&(lines.join("\n") + "\n"));
+    }
     let binding = match &args.setup {
         Some(setup) => {
             let binding = task.bind(&requirements, &furniture.objects);
@@ -60,14 +73,14 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
         if let Some(binding) = binding {
             json["binding"] = json!(binding);
         }
-        return print(&format!("{json:#}\n"));
+        return print_json(&json);
     }
     let mut lines = reported(&task);
     if lines.is_empty() {
         lines.push("Nothing is moved for good.".into());
     }
     lines.extend(task.detours.iter().map(|detour| {
-        let noun = role_noun(&task, &detour.object);
+        let noun = task.noun(&detour.object);
         let what = match detour.kind {
             DetourKind::InPlace => "was held in its place",
             DetourKind::AwayAndBack => "was moved away and back",
@@ -90,9 +103,25 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     print(&(lines.join("\n") + "\n"))
 }
 
+/// What a demonstration means, if that is more than its steps.
+fn program(shown: &Demonstration, task: &Task) -> Option<Vec<String>> {
+    let meaning = Meaning::beyond_steps(shown, task)?;
+    let program = meaning.program.as_ref()?.to_string();
+    Some([vec![program], told(&meaning)].concat())
+}
+
+/// The steps of a demonstration, and the objects like those that were moved which were not.
+fn steps(shown: &Demonstration, task: &Task) -> Vec<String> {
+    let untouched = Example::of(shown, task)
+        .map(|example| Meaning::untouched_in(&[example]))
+        .unwrap_or_default();
+    [reported(task), not_moved(&untouched)].concat()
+}
+
 /// The steps with their numbers, and the operations and pushes between them.
 pub(super) fn reported(task: &Task) -> Vec<String> {
-    let steps = task.steps.iter().map(|step| (step.grasp, numbered(step)));
+    let steps = task.told().into_iter();
+    let steps = steps.map(|(tick, step)| (tick, numbered(step)));
     let operations = task.operations.iter();
     let operations = operations.map(|done| (done.tick, format!("- {}", done.sentence())));
     let pushes = task.pushes.iter();
@@ -117,23 +146,18 @@ pub(super) fn read(
     furniture: &Furniture,
 ) -> Result<(Task, Requirements), Failure> {
     let shown = read_demonstration(recording, furniture).map_err(Failure::input)?;
-    let mut task = Task::of(&shown);
+    understood(&shown, recording)
+}
+
+/// The task that a demonstration shows, with the requirements of its recording in its sentences.
+pub(super) fn understood(
+    shown: &Demonstration,
+    recording: &Path,
+) -> Result<(Task, Requirements), Failure> {
+    let mut task = Task::of(shown);
     let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
     task.phrase(&requirements);
     Ok((task, requirements))
-}
-
-fn read_demonstration(
-    recording: &Path,
-    furniture: &Furniture,
-) -> Result<Demonstration, RecorderError> {
-    if let Some(segments) = read_original(recording)? {
-        let shown = Demonstration::of_events(&segments, TICKS_PER_FRAME, furniture);
-        return Ok(shown);
-    }
-    let recording = RecordingReader::open(recording)?;
-    say_if_cut_off(&recording, "explained");
-    Demonstration::of(&recording)
 }
 
 /// A step with its number, and the steps that must come before it unless that is just the previous one.
@@ -156,18 +180,18 @@ fn numbered(step: &TaskStep) -> String {
     format!("{number}. {sentence}{order}")
 }
 
-fn role_noun(task: &Task, id: &str) -> String {
-    task.role(id)
-        .map_or_else(|| id.to_owned(), |role| role.noun.clone())
-}
-
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|letter| letter.to_ascii_uppercase());
     first.into_iter().chain(letters).collect()
 }
 
+pub(super) fn print_json(json: &Value) -> Result<ExitCode, Failure> {
+    Output::Stdout.write(format!("{json:#}\n").as_bytes())?;
+    Ok(ExitCode::SUCCESS)
+}
+
 pub(super) fn print(text: &str) -> Result<ExitCode, Failure> {
-    Output::Stdout.write(text.as_bytes())?;
+    Output::tell(text)?;
     Ok(ExitCode::SUCCESS)
 }

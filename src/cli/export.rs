@@ -15,13 +15,15 @@ use clap::{Args, ValueEnum};
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
+    cameras::{Cameras, cameras},
     cut_off::say_if_cut_off,
-    film_camera::{FilmCameras, cameras},
     picture_size::picture_size,
     progress::ProgressLine,
     range::NumberRange,
     recordings::recordings_in,
+    result_file::require_outside,
     terminal::show_warnings,
+    wait::WaitOption,
 };
 
 #[derive(Args)]
@@ -48,7 +50,7 @@ pub(super) struct ExportArgs {
     /// The cameras, separated by commas: `head`, hand cameras such as `left_hand`, and names with a location and, if it is not the centre of
     /// the table, the point that they look at, in units of 10 cm: `side=14,0,8` or `side=14,0,8,0,0,1` [default: as recorded]
     #[arg(long, value_name = "LIST", value_parser = cameras)]
-    cameras: Option<FilmCameras>,
+    cameras: Option<Cameras>,
     /// Write the pictures of a LeRobot dataset as videos (AV1), which are smaller and not quite the same
     #[arg(long)]
     video: bool,
@@ -60,12 +62,15 @@ pub(super) struct ExportArgs {
     ids: bool,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Leave out the columns with the parts of the task, which LeRobot reads from version 0.6 on
+    /// Add the parts of the task and other words for it to a LeRobot dataset, in columns that LeRobot reads from version 0.6 on and that no plain
+    /// DataLoader collates. The program that a recording means (docs/task-programs.md) is among the words
     #[arg(long)]
-    no_language: bool,
+    language: bool,
     /// Number of recordings read at a time, from 1 to 256 [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 /// Reads a number of pictures a second.
@@ -108,26 +113,50 @@ pub(super) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
         let recording = RecordingReader::open(recording).map_err(Failure::input)?;
         say_if_cut_off(&recording, "exported");
     }
-    if args.video && format != "lerobot" {
-        return Err(Failure::input(
-            "--video goes with --to lerobot: no other format has videos",
-        ));
+    for (option, is_asked, what) in [
+        ("--video", args.video, "videos"),
+        ("--language", args.language, "language columns"),
+    ] {
+        if is_asked && format != "lerobot" {
+            return Err(Failure::input(format!(
+                "{option} goes with --to lerobot: no other format has {what}"
+            )));
+        }
     }
     let out = PathBuf::from(out);
+    let read: Vec<_> = recordings.iter().map(PathBuf::as_path).collect();
+    require_outside(&out, &read)?;
+    let storage = args.wait.storage();
     let start = Instant::now();
     let summary = match format.to_str() {
         Some("lerobot") => {
-            let dataset = LeRobot::open(out).map_err(failed)?;
-            let dataset = match args.no_language {
-                true => dataset.without_language(),
+            let dataset = LeRobot::open(out, &storage).map_err(failed)?;
+            let dataset = match args.language {
+                true => dataset.with_language(),
                 false => dataset,
             };
-            args.export(&recordings, dataset)
+            let has_program = dataset.has_language();
+            args.export(&recordings, dataset, has_program)
         }
-        Some("robomimic") => args.export(&recordings, Robomimic::open(out).map_err(failed)?),
-        Some("mcap") => args.export(&recordings, Mcap::open(out).map_err(failed)?),
-        Some("rlds") => args.export(&recordings, Rlds::open(out).map_err(failed)?),
-        Some("mat") => args.export(&recordings, Matlab::open(out).map_err(failed)?),
+        Some("robomimic") => {
+            let file = Robomimic::open(out, &storage).map_err(failed)?;
+            args.export(&recordings, file, false)
+        }
+        Some("mcap") => args.export(
+            &recordings,
+            Mcap::open(out, &storage).map_err(failed)?,
+            false,
+        ),
+        Some("rlds") => args.export(
+            &recordings,
+            Rlds::open(out, &storage).map_err(failed)?,
+            false,
+        ),
+        Some("mat") => args.export(
+            &recordings,
+            Matlab::open(out, &storage).map_err(failed)?,
+            false,
+        ),
         _ => {
             let format = format.display();
             return Err(Failure::input(format!(
@@ -135,7 +164,7 @@ pub(super) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
             )));
         }
     }?;
-    Output::Stdout.write(reported(summary, start.elapsed().as_secs_f64()).as_bytes())?;
+    Output::tell(&reported(summary, start.elapsed().as_secs_f64()))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -144,6 +173,7 @@ impl ExportArgs {
         &self,
         recordings: &[PathBuf],
         format: F,
+        has_program: bool,
     ) -> Result<ExportSummary, Failure> {
         let selection = EpisodeSelection {
             state: self.state.map(|state| match state {
@@ -159,11 +189,12 @@ impl ExportArgs {
             pictures: PictureSelection {
                 fps: self.fps,
                 size: self.size.map(|(width, height)| [width, height]),
-                cameras: self.cameras.clone().map(|FilmCameras(cameras)| cameras),
+                cameras: self.cameras.clone().map(|Cameras(cameras)| cameras),
                 has_video: self.video,
                 has_depth: self.depth,
                 has_ids: self.ids,
             },
+            has_program,
             allowed: self.allowed.folders.clone(),
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);

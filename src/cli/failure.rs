@@ -2,6 +2,8 @@
 
 use std::{fmt, io, path::Path};
 
+use crate::recorder::RecorderError;
+
 use super::terminal::say;
 
 /// Wrong usage or input.
@@ -13,6 +15,12 @@ pub(super) struct Failure {
     /// The message, unless it was already reported.
     pub message: Option<String>,
     pub code: u8,
+}
+
+impl From<RecorderError> for Failure {
+    fn from(error: RecorderError) -> Self {
+        Self::run(error)
+    }
 }
 
 impl Failure {

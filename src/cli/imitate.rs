@@ -8,24 +8,25 @@ use std::{
 };
 
 use crate::{
-    TabletopSimPlugins,
-    assembly::{IdAllocator, assemble},
-    headless_app_with,
+    TabletopSimPlugins, headless_app_with,
     imitation::{AppStage, SeeingStage, imitate_seeing, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{
         Before, Doing, Execution, ExecutionPace, Following, Imitation, PlanningStage as _,
         RobotBody, imitate,
     },
-    policy::{PicturePolicy, Policy, follow_policy, left_undone},
-    real::RealRobotPlugin,
+    policy::{PicturePolicy, ToldTask, follow_policy, left_undone},
+    real::{BodyGuard, RealRobotPlugin},
     recorder::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
-        read_original,
+        read_original, whole_recording,
     },
     robot::RobotPlugin,
-    robot_body, run_episodes, scene_at_beginning,
+    robot_body, run_episodes,
+    scene::{IdAllocator, assemble},
+    scene_at_beginning,
     shipped::read_faultless_task,
+    storage::{InnerPath, Storage},
     task::{Binding, Requirements, Task},
 };
 use bevy::prelude::*;
@@ -39,12 +40,14 @@ use tabletop_core::{
 
 use super::{
     Failure, Output,
+    acting_policy::{ActingPolicy, PolicyOptions, follow_motions, words_of},
     allowed_paths::AllowedPaths,
     explain::{furniture, read},
     hand_cameras::HandCameraOption,
     range::{NumberRange, SEEDS},
     real::{self, DrivenOptions},
     recorded::{self, say_moved_aside},
+    result_file::require_outside,
     robot_options::RobotChoice,
     shard::ShardOption,
     terminal::{say, show_warnings},
@@ -56,7 +59,7 @@ const TRIALS: NumberRange<u64> = NumberRange::whole(1, 100_000);
 #[derive(Args)]
 #[command(mut_group("HandCameraOption", |options| options.requires("record")))]
 #[command(mut_group("ShardOption", |options| options.requires("trials")))]
-#[command(mut_arg("real", |real| real.requires("setup").conflicts_with_all(["trials", "seed", "exchange_colors", "eyes", "policy", "dynamic"])))]
+#[command(mut_arg("real", |real| real.requires("setup").conflicts_with_all(["trials", "seed", "exchange_colors", "eyes", "policy", "dynamic", "hand_cameras"])))]
 pub(super) struct ImitateArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
@@ -83,10 +86,8 @@ pub(super) struct ImitateArgs {
     /// Learn the task from the recording's pictures alone, too
     #[arg(long, requires = "eyes")]
     watch: bool,
-    /// Let this policy decide what is moved where, by the pictures of the head camera: one that `tabletop learn` has made of the recording, or an ONNX file of
-    /// somebody else's (docs/learning.md)
-    #[arg(long, value_name = "FILE")]
-    policy: Option<PathBuf>,
+    #[command(flatten)]
+    policy: PolicyOptions,
     #[command(flatten)]
     robot: RobotChoice,
     #[command(flatten)]
@@ -111,6 +112,9 @@ struct Trial {
 /// Lets the robot do the task, once or several times. Exit code 1 if it has failed, or could not be tried for lack of room.
 pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
+    if let Some(folder) = &args.record {
+        require_outside(folder, &[&args.recording])?;
+    }
     let scene = match &args.setup {
         Some(setup) => read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?,
         None => scene_of(&args.recording)?,
@@ -123,8 +127,13 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         let reason = "the recording moves nothing for good, so there is nothing to imitate";
         return Err(Failure::input(reason));
     }
-    let policy = args.policy.as_deref().map(read_policy).transpose()?;
-    let robot = args.robot.plugin()?;
+    let robot = args.real.body(args.robot.plugin()?)?;
+    let policy = args.policy.read(&robot)?;
+    if let (Some(ActingPolicy::Motions(_)), true) = (&policy, args.eyes) {
+        let reason =
+            "--eyes finds what is to be grasped, and the actions of this policy move joints";
+        return Err(Failure::input(reason));
+    }
     let hand_pictures = args.hand_cameras.of(&robot)?;
     let body = robot_body(&robot, &scene.table).map_err(Failure::run)?;
     let first = args.seed.unwrap_or(0);
@@ -135,7 +144,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             false => Some(first.wrapping_add(number)),
         };
         let folder = args.record.as_ref().map(|folder| match (seed, is_single) {
-            (Some(seed), false) => folder.join(seed.to_string()),
+            (Some(seed), false) => InnerPath::numbered("", seed, "").below(folder),
             _ => folder.clone(),
         });
         let attempt = Attempt {
@@ -147,12 +156,12 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             hand_pictures: &hand_pictures,
             exchanges_colors: args.exchange_colors,
             has_eyes: args.eyes,
-            policy: policy.as_deref(),
+            policy: policy.as_ref(),
             real: &args.real,
             seed,
             folder,
         };
-        attempt.make(is_single)
+        attempt.make_whole(is_single)
     };
     let mut trials = Vec::new();
     run_episodes(
@@ -181,33 +190,11 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         ([trial], true) => single(&task, trial),
         _ => table(&trials),
     };
-    Output::Stdout.write(text.as_bytes())?;
+    Output::tell(&text)?;
     trials
         .iter()
-        .for_each(|trial| say_moved_aside(&trial.report));
+        .for_each(|trial| say_moved_aside(&trial.report.moved_aside));
     Ok(ExitCode::from(u8::from(!is_done)))
-}
-
-/// The policy of a file.
-fn read_policy(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
-    if file.extension().is_some_and(|kind| kind == "onnx") {
-        return read_onnx(file);
-    }
-    Ok(Box::new(Policy::read(file).map_err(Failure::input)?))
-}
-
-#[cfg(feature = "onnx")]
-fn read_onnx(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
-    let policy = crate::policy::OnnxPolicy::read(file).map_err(Failure::input)?;
-    Ok(Box::new(policy))
-}
-
-#[cfg(not(feature = "onnx"))]
-fn read_onnx(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
-    Err(Failure::input(format!(
-        "{}: this program was built without ONNX; build it with cargo build --release --features onnx",
-        file.display()
-    )))
 }
 
 /// The scene with which a recording begins.
@@ -234,31 +221,45 @@ struct Attempt<'a> {
     hand_pictures: &'a HandPictures,
     exchanges_colors: bool,
     has_eyes: bool,
-    policy: Option<&'a dyn PicturePolicy>,
+    policy: Option<&'a ActingPolicy>,
     real: &'a DrivenOptions,
     seed: Option<u64>,
     folder: Option<PathBuf>,
 }
 
-/// Gives pictures the size that a policy needs.
-fn resize_for(policy: &dyn PicturePolicy, head: &mut HeadCamera) {
-    if let Some([width, height]) = policy.picture_size() {
-        (head.width, head.height) = (width, height);
-    }
-}
-
 impl Attempt<'_> {
+    /// The policy that decides by pictures of the head camera.
+    fn picture_policy(&self) -> Option<&dyn PicturePolicy> {
+        self.policy?.picture_policy()
+    }
+
     /// The camera by whose pictures a policy decides.
     fn camera_of_policy(&self, table: &Table) -> Option<Camera> {
         let mut head = HeadCamera::default();
-        resize_for(self.policy?, &mut head);
+        self.picture_policy()?;
+        self.policy?.resize(&mut head);
         if let Some(description) = &self.robot.description {
             head.carrier = CameraCarrier::from(&description.layout);
         }
         Some(Camera::of_head(&head, table))
     }
 
-    fn make(&self, is_reported: bool) -> Result<Trial, Failure> {
+    /// Makes it. Its recording appears whole; that of a real robot from its beginning, so that a kill costs nothing of it.
+    fn make_whole(&self, is_reported: bool) -> Result<Trial, Failure> {
+        let Some(folder) = self
+            .folder
+            .as_deref()
+            .filter(|_| self.real.address().is_none())
+        else {
+            return self.make(self.folder.as_deref(), is_reported);
+        };
+        let make = |draft: &Path| self.make(Some(draft), is_reported);
+        let (mut trial, moved_aside) = whole_recording(folder, &Storage::default(), make)?;
+        trial.report.moved_aside.extend(moved_aside);
+        Ok(trial)
+    }
+
+    fn make(&self, folder: Option<&Path>, is_reported: bool) -> Result<Trial, Failure> {
         let start = Instant::now();
         let scene = match self.exchanges_colors {
             true => with_colors_exchanged(self.scene.clone(), self.seed.unwrap_or(0)),
@@ -293,9 +294,9 @@ impl Attempt<'_> {
             .bind(self.requirements, &objects)
             .map_err(Failure::run)?;
         let plugins = TabletopSimPlugins.build().set(self.robot.clone());
-        let plugins = match &self.folder {
+        let plugins = match folder {
             Some(folder) => plugins.set(RecorderPlugin {
-                folder: folder.clone(),
+                folder: folder.to_owned(),
                 header: self.real.header(),
                 hand_pictures: self.hand_pictures.clone(),
                 ..default()
@@ -312,13 +313,13 @@ impl Attempt<'_> {
             real::stand_in(&mut app, real);
         }
         if let Some(policy) = self.policy {
-            resize_for(policy, &mut app.world_mut().resource_mut::<HeadCamera>());
+            policy.resize(&mut app.world_mut().resource_mut::<HeadCamera>());
         }
         app.world_mut()
             .write_command(SceneCommand::Set(Box::new(scene)));
         app.world_mut().write_command(RobotCommand::Show(true));
         app.step(30);
-        if self.folder.is_some() {
+        if folder.is_some() {
             app.world_mut().write_command(RecordingCommand::Start);
             app.step(1);
         }
@@ -326,8 +327,8 @@ impl Attempt<'_> {
             true => self.imitate_for_real(&mut app, &binding),
             false => Ok(self.imitate(&mut app, &binding, &objects, is_reported)),
         };
-        real::release(&mut app);
         let recorded = recorded::finish(&mut app);
+        real::release(&mut app);
         let (imitation, report) = (imitation?, recorded?);
         let ticks = app.world().resource::<SimTick>().0;
         Ok(Trial {
@@ -345,7 +346,8 @@ impl Attempt<'_> {
     fn imitate_for_real(&self, app: &mut App, binding: &Binding) -> Result<Imitation, Failure> {
         let sight = Sight::of(app.world_mut());
         let layout = app.world().resource::<RobotLayout>().clone();
-        let (body, task) = (self.body.clone(), self.task.clone());
+        let body = self.body.clone().guarded(BodyGuard::GAPS);
+        let task = self.task.clone();
         let pace = ExecutionPace {
             patience: Duration::ZERO,
             following: Following::MACHINE,
@@ -393,7 +395,10 @@ impl Attempt<'_> {
                 self.tell(doing);
             }
         };
-        let Some(policy) = self.policy else {
+        if let Some(ActingPolicy::Motions(policy)) = self.policy {
+            return follow_motions(policy, app, task, binding, objects);
+        }
+        let Some(policy) = self.picture_policy() else {
             return match self.has_eyes {
                 true => imitate_seeing(app, self.body, task, binding, objects, seed, tell),
                 false => {
@@ -410,16 +415,21 @@ impl Attempt<'_> {
                 ));
             }
         };
+        let words = words_of(task);
+        let told = ToldTask {
+            words: &words,
+            objects,
+        };
         let most = 2 * task.steps.len();
         let before = Before::anything(AppStage::new(app).sight());
         let mut imitation = match self.has_eyes {
             true => {
                 let mut stage = SeeingStage::of_task(app, self.body, task, binding, objects);
-                follow_policy(policy, &mut stage, self.body, most, seed, tell_move)
+                follow_policy(policy, &mut stage, self.body, &told, most, seed, tell_move)
             }
             false => {
                 let mut stage = AppStage::new(app);
-                follow_policy(policy, &mut stage, self.body, most, seed, tell_move)
+                follow_policy(policy, &mut stage, self.body, &told, most, seed, tell_move)
             }
         };
         if imitation.failure.is_none() {

@@ -11,6 +11,7 @@ use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
     recorded::say_moved_aside,
+    result_file::require_outside,
     terminal::{say, show_warnings},
 };
 
@@ -35,6 +36,7 @@ const MOST_REMARKS: usize = 20;
 /// Imports a recording.
 pub(super) fn run(args: &ImportArgs) -> Result<ExitCode, Failure> {
     show_warnings();
+    require_outside(&args.out, &[&args.source])?;
     let setup = match &args.setup {
         Some(setup) => {
             Some(read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?)
@@ -49,8 +51,8 @@ pub(super) fn run(args: &ImportArgs) -> Result<ExitCode, Failure> {
     if more > 0 {
         say(format_args!("tabletop: {more} more remarks of this kind"));
     }
-    Output::Stdout.write(reported(&import).as_bytes())?;
-    say_moved_aside(&import.report);
+    Output::tell(&reported(&import))?;
+    say_moved_aside(&import.report.moved_aside);
     Ok(ExitCode::SUCCESS)
 }
 

@@ -11,7 +11,7 @@ use std::{
 use crate::{
     core::ShippedFile,
     shipped::{WORKING_FOLDERS, shipped_files},
-    storage::{Storage, Symlinks, parent_of, read_regular_file},
+    storage::{InnerPath, Storage, Symlinks, parent_of, read_regular_file},
 };
 use clap::Args;
 
@@ -50,7 +50,7 @@ fn make_folder(target: &Path) -> Result<(), Failure> {
     let mut differing = Vec::new();
     for folder in WORKING_FOLDERS {
         for file in shipped_files().in_folder(folder) {
-            let path = target.join(file.path);
+            let path = InnerPath::fixed(file.path).below(target);
             match look_at(&path, file)? {
                 Existing::Nothing => missing.push((path, file)),
                 Existing::TheSame => {}
@@ -78,7 +78,7 @@ fn make_folder(target: &Path) -> Result<(), Failure> {
         let written = missing.iter().filter(|(_, file)| is_in(folder, file));
         let written = written.count();
         let there = shipped_files().in_folder(folder).count() - written;
-        let place = target.join(folder);
+        let place = InnerPath::fixed(folder).below(target);
         let line = match (written, there) {
             (written, 0) => format!("{}: {written} files written\n", place.display()),
             (0, there) => format!("{}: {there} files there already\n", place.display()),
@@ -87,7 +87,7 @@ fn make_folder(target: &Path) -> Result<(), Failure> {
                 place.display()
             ),
         };
-        Output::Stdout.write(line.as_bytes())?;
+        Output::tell(&line)?;
     }
     Ok(())
 }

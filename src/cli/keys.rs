@@ -35,7 +35,7 @@ pub(super) fn list(args: &KeysArgs) -> Result<ExitCode, Failure> {
         true => keymap_file::write(&keymap),
         false => table(&keymap, &preferences),
     };
-    Output::Stdout.write(text.as_bytes())?;
+    Output::tell(&text)?;
     Ok(match faults.is_empty() {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(WRONG_INPUT),

@@ -6,7 +6,7 @@ use crate::{
     multiplication::Multiplication,
     policy::{Curriculum, Evaluation, PolicyError, Training, loss_curve},
     recorder::RecordingReader,
-    storage::Storage,
+    storage::WriterLock,
 };
 use clap::Args;
 
@@ -16,8 +16,10 @@ use super::{
     jobs::{JOBS, at_a_time},
     progress::ProgressLine,
     range::{NumberRange, SEEDS},
+    result_file::{ResultFile, ResultKind, require_outside},
     terminal::show_warnings,
     variation_options::VariationOptions,
+    wait::WaitOption,
 };
 
 #[derive(Args)]
@@ -45,6 +47,8 @@ pub(super) struct LearnArgs {
     /// Number of threads, from 1 to 256, of which at most four have work [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
@@ -54,6 +58,18 @@ const TRIALS: NumberRange<u64> = NumberRange::whole(0, 100_000);
 /// Learns, and prints how the policy does in other scenes. Exit code 1 if it cannot learn.
 pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     show_warnings();
+    let plot = args.out.with_extension("svg");
+    if plot == args.out {
+        let out = args.out.display();
+        return Err(Failure::input(format!(
+            "{out}: the plot of the loss has this name; name a policy such as policy.safetensors"
+        )));
+    }
+    ResultFile::replacing(&args.out, ResultKind::Policy)?;
+    let plot = ResultFile::replacing(&plot, ResultKind::LossCurve)?;
+    require_outside(&args.out, &[&args.recording])?;
+    let _alone = WriterLock::of_place(&args.out, &args.wait.storage())
+        .map_err(|error| Failure::at(&args.out, error))?;
     let recording = RecordingReader::open(&args.recording).map_err(Failure::input)?;
     say_if_cut_off(&recording, "learned from");
     let variation = args.variation.variation();
@@ -65,15 +81,13 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     let start = Instant::now();
     learn(args, &curriculum, &mut training)?;
     let seconds = start.elapsed().as_secs_f64();
-    let plot = args.out.with_extension("svg");
-    let plotted = Storage::default().replace(&plot, loss_curve(training.losses()).as_bytes());
-    plotted.map_err(|error| Failure::at(&plot, error))?;
+    plot.write(loss_curve(training.losses()).as_bytes())?;
     let evaluation = training
         .policy()
         .evaluate(&curriculum, args.trials)
         .map_err(failure)?;
     let text = format!("learned in {seconds:.0} s\n{}", table(&evaluation));
-    Output::Stdout.write(text.as_bytes())?;
+    Output::tell(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -109,7 +123,7 @@ fn table(evaluation: &Evaluation) -> String {
 
 fn failure(error: PolicyError) -> Failure {
     match error {
-        PolicyError::Io { .. } => Failure::run(error),
+        PolicyError::Io { .. } | PolicyError::Wire(_) => Failure::run(error),
         PolicyError::Multiply(_)
         | PolicyError::NoPlace(_)
         | PolicyError::TooManyLevels(_)

@@ -23,10 +23,12 @@ use super::{
     jobs::{JOBS, at_a_time},
     progress::ProgressLine,
     range::{NumberRange, SEEDS},
+    result_file::require_outside,
     robot_options::robot_of,
     shard::ShardOption,
     terminal::{say, show_warnings},
     variation_options::VariationOptions,
+    wait::WaitOption,
 };
 
 #[derive(Args)]
@@ -65,6 +67,8 @@ pub(super) struct MultiplyArgs {
     /// Number of demonstrations made at a time, from 1 to 256 [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
@@ -83,6 +87,7 @@ fn no_folder(file: PathBuf) -> Result<PathBuf, &'static str> {
 /// Makes the demonstrations. Exit code 1 if some could not be made.
 pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     show_warnings();
+    require_outside(&args.out, &[&args.recording])?;
     let robot = match &args.robot {
         Some(file) => Some(robot_of(file.as_deref())?),
         None => None,
@@ -123,7 +128,9 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     };
     let multiplication = multiplication.with_hand_pictures(hand_pictures);
     let manifest = args.manifest(&multiplication);
-    let collection = Collection::open(&args.out, MANIFEST, &manifest).map_err(refused)?;
+    let storage = args.wait.storage();
+    let collection = Collection::open(&args.out, MANIFEST, &manifest, &storage);
+    let collection = collection.map_err(refused)?;
     let start = Instant::now();
     let mut missing = Vec::new();
     let mut there = 0;
@@ -139,14 +146,14 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     let outcome = outcome?;
     closed?;
     let real = start.elapsed().as_secs_f64();
-    Output::Stdout.write(outcome.summary(there, real).as_bytes())?;
+    Output::tell(&outcome.summary(there, real))?;
     Ok(ExitCode::from(u8::from(!outcome.given_up.is_empty())))
 }
 
 /// The failure of a folder that takes no recordings.
 pub(super) fn refused(error: CollectionError) -> Failure {
     match error {
-        CollectionError::Io { .. } | CollectionError::InUse(_) => Failure::run(error),
+        CollectionError::Io { .. } => Failure::run(error),
         CollectionError::OtherManifest(_)
         | CollectionError::SomethingElse(_)
         | CollectionError::NoMember(_) => Failure::input(error),

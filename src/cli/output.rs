@@ -7,7 +7,11 @@ use std::{
 
 use crate::storage::Storage;
 
-use super::{Failure, terminal::printable};
+use super::{
+    Failure,
+    result_file::{ResultFile, ResultKind},
+    terminal::printable,
+};
 
 /// A path, or `-` for standard output.
 #[derive(Clone, Debug)]
@@ -26,14 +30,17 @@ impl From<std::ffi::OsString> for Output {
 }
 
 impl Output {
-    /// Checks that it can be written, without leaving a trace.
-    pub fn check(&self) -> Result<(), Failure> {
+    /// Checks that a result of this kind can be written there, without leaving a trace.
+    pub fn check(&self, kind: ResultKind) -> Result<(), Failure> {
         match self {
             Self::Stdout => Ok(()),
-            Self::File(path) => Storage::default()
-                .check_replaceable(path)
-                .map_err(|error| Failure::at(path, error)),
+            Self::File(path) => ResultFile::replacing(path, kind).map(drop),
         }
+    }
+
+    /// Writes sentences for the user to standard output. Names in them may be a stranger's, so what a terminal would obey is escaped.
+    pub fn tell(text: &str) -> Result<(), Failure> {
+        Self::Stdout.write(printable(text).as_bytes())
     }
 
     /// Writes everything, or reports the place that could not be written; a file is then as it was.

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::progress::{PROGRESS_VARIABLE, progress_line};
+use tabletop_sim::progress::{PROGRESS_VARIABLE, progress_line};
 
 /// A progress line on standard error, if that is a terminal, or a new line each time for a program that asks for it.
 pub(super) struct ProgressLine {

@@ -1,11 +1,14 @@
 //! Options for a real robot, which is followed or driven.
 
-use std::io::{BufRead as _, IsTerminal as _, stdin};
+use std::{
+    io::{BufRead as _, IsTerminal as _, stdin},
+    path::Path,
+};
 
 use crate::{
-    bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Shadow},
-    core::{RobotCommand, RobotMode, Table, WriteCommand as _},
-    real::{RealLink, RealRobot, head_pictures},
+    bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Sentinel, Shadow},
+    core::{RobotCommand, RobotLayout, RobotMode, Table, WriteCommand as _},
+    real::{RealLink, RealRobot, head_pictures, interface_of, sentinel_command, shipped_body},
     robot::RobotPlugin,
     robot_body,
 };
@@ -13,7 +16,7 @@ use bevy::prelude::*;
 use clap::Args;
 use serde_json::{Map, Value};
 
-use super::{Failure, range::NumberRange, terminal::say};
+use super::{Failure, range::NumberRange, robot_options::describe, terminal::say};
 
 const SHARES: NumberRange<f64> = NumberRange::decimal(0.01, 1.0);
 
@@ -67,6 +70,11 @@ impl RealOptions {
         self.shadow.as_ref().or(self.driven.address())
     }
 
+    /// The robot that stands for the real one: the one that was chosen, or the body of the address' robot.
+    pub fn body(&self, chosen: RobotPlugin) -> Result<RobotPlugin, Failure> {
+        body_of(self.address(), chosen)
+    }
+
     /// Connects to the real robot, if there is one.
     pub fn connect(
         &self,
@@ -94,6 +102,11 @@ impl DrivenOptions {
         self.real.as_ref()
     }
 
+    /// The robot that stands for the real one: the one that was chosen, or the body of the address' robot.
+    pub fn body(&self, chosen: RobotPlugin) -> Result<RobotPlugin, Failure> {
+        body_of(self.address(), chosen)
+    }
+
     /// Its entry in the header of a recording.
     pub fn header(&self) -> Map<String, Value> {
         header(self.address())
@@ -109,7 +122,7 @@ impl DrivenOptions {
             return Ok(None);
         };
         refuse_simulated_motors(robot)?;
-        let profile = profile(address)?;
+        let profile = profile(address, robot)?;
         let link = self.drive(address, &profile, robot, table)?;
         Ok(Some(RealRobot::new(link, feed(address, &profile))))
     }
@@ -130,9 +143,19 @@ impl DrivenOptions {
             any_software: self.any_software,
         };
         self.ask(address)?;
-        let bridge = Bridge::connect(address, profile, &options).map_err(Failure::run)?;
+        let mut bridge = Bridge::connect(address, profile, &options).map_err(Failure::run)?;
+        if profile.needs_sentinel() {
+            bridge.set_sentinel(self.sentinel(address, robot)?);
+        }
         let body = robot_body(robot, table).map_err(Failure::run)?;
-        Ok(RealLink::guarded(bridge, body, *table, profile))
+        Ok(RealLink::guarded(bridge, body, *table))
+    }
+
+    /// A process that brings the robot to rest if this one is killed.
+    fn sentinel(&self, address: &Address, robot: &RobotPlugin) -> Result<Sentinel, Failure> {
+        let command = sentinel_command(address, folder(robot), &self.arms);
+        let command = command.map_err(|error| Failure::run(format!("this program: {error}")))?;
+        Sentinel::start(command).map_err(Failure::run)
     }
 
     /// Asks whether the robot may move.
@@ -166,7 +189,7 @@ impl DrivenOptions {
 /// A real robot that is only looked at.
 fn follow(address: &Address, robot: &RobotPlugin) -> Result<RealRobot, Failure> {
     refuse_simulated_motors(robot)?;
-    let profile = profile(address)?;
+    let profile = profile(address, robot)?;
     let shadow = Shadow::connect(address, &profile).map_err(Failure::run)?;
     Ok(RealRobot::new(
         RealLink::Shadow(shadow),
@@ -195,8 +218,27 @@ pub(super) fn stand_in(app: &mut App, real: RealRobot) {
     app.world_mut().write_command(RobotCommand::Show(true));
 }
 
-fn profile(address: &Address) -> Result<BridgeProfile, Failure> {
-    BridgeProfile::shipped(&address.robot).map_err(Failure::input)
+/// The robot that stands for the one at an address.
+fn body_of(address: Option<&Address>, chosen: RobotPlugin) -> Result<RobotPlugin, Failure> {
+    let file = address.and_then(shipped_body);
+    let Some(file) = file.filter(|_| chosen.description.is_none()) else {
+        return Ok(chosen);
+    };
+    Ok(RobotPlugin {
+        description: Some(describe(Path::new(file))?),
+        ..chosen
+    })
+}
+
+/// The folder of a robot's description, if it has one.
+fn folder(robot: &RobotPlugin) -> Option<&Path> {
+    robot.description.as_ref()?.folder()
+}
+
+fn profile(address: &Address, robot: &RobotPlugin) -> Result<BridgeProfile, Failure> {
+    let description = robot.description.as_ref();
+    let layout = description.map_or(RobotLayout::baxter(), |it| &it.layout);
+    interface_of(address, folder(robot), layout).map_err(Failure::input)
 }
 
 /// The pictures of the head camera, if the robot has one that shows them.

@@ -1,6 +1,6 @@
 //! The end of a command's recording.
 
-use crate::recorder::{RecordingReport, finish_recording};
+use crate::recorder::{MovedAside, RecordingReport, finish_recording};
 use bevy::prelude::*;
 
 use super::{Failure, terminal::say};
@@ -11,8 +11,8 @@ pub(super) fn finish(app: &mut App) -> Result<RecordingReport, Failure> {
 }
 
 /// Says where the earlier recordings are that were in the way.
-pub(super) fn say_moved_aside(report: &RecordingReport) {
-    for moved in &report.moved_aside {
+pub(super) fn say_moved_aside<'m>(moved_aside: impl IntoIterator<Item = &'m MovedAside>) {
+    for moved in moved_aside {
         let (from, to) = (moved.from.display(), moved.to.display());
         say(format_args!(
             "tabletop: {from}: the earlier recording there is now {to}"

@@ -6,9 +6,10 @@ use crate::{
     core::{HeadCamera, SimTick, StepApp as _, TICKS_PER_SECOND},
     geometry::Pose,
     headless_app_with,
-    recorder::{Channels, RecorderPlugin, RecordingReport},
+    recorder::{Channels, RecorderPlugin, whole_recording},
     replay::{Player, Replay, ReplayError},
     script::ScriptPlugin,
+    storage::Storage,
 };
 use bevy::{math::Vec3, prelude::*};
 use clap::Args;
@@ -16,13 +17,15 @@ use clap::Args;
 use super::{
     Failure,
     allowed_paths::AllowedPaths,
+    cameras::{ANGLES_OF_VIEW, COORDINATES},
     cut_off::say_if_cut_off,
     duration::{SECONDS, ticks},
-    film_camera::{ANGLES_OF_VIEW, COORDINATES},
     hand_cameras::HandCameraOption,
     picture_size::picture_size,
     progress::ProgressLine,
+    quiet::QuietOption,
     recorded::say_moved_aside,
+    result_file::require_outside,
     robot_options::{EngineOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
@@ -59,6 +62,8 @@ pub(super) struct ReplayArgs {
     seconds: Option<f64>,
     #[command(flatten)]
     engine: EngineOptions,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
 /// Properties of a replay's pictures, in place of the recorded ones.
@@ -105,6 +110,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let replay = Replay::read_allowing(&args.recording, &args.allowed.folders);
     let replay = replay.map_err(Failure::input)?;
     say_if_cut_off(replay.recording(), "replayed");
+    if let Some(out) = &args.out {
+        require_outside(out, &[&args.recording])?;
+    }
     if args.window {
         let settings = args.engine.settings(args.script.as_deref())?;
         return window::play(replay, settings, args.allowed.folders.clone());
@@ -119,7 +127,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         progress.reach(in_seconds(ticks), "");
         true
     };
-    let mut report = RecordingReport::default();
+    let mut moved = None;
     let difference = match &args.out {
         None if args.verify => replay.verify(goes_on).map_err(refused),
         None => {
@@ -128,9 +136,16 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         }
         Some(out) => {
             let (recorder, camera) = args.pictures.recorder(&replay, out.clone())?;
-            let recorded = replay.record_while(recorder, camera, &mut goes_on);
-            recorded.map_err(Failure::run).and_then(|recorded| {
-                report = recorded;
+            let recorded = whole_recording(out, &Storage::default(), |folder| {
+                let recorder = RecorderPlugin {
+                    folder: folder.to_owned(),
+                    ..recorder
+                };
+                let recorded = replay.record_while(recorder, camera, &mut goes_on);
+                recorded.map_err(Failure::run)
+            });
+            recorded.and_then(|(_, moved_aside)| {
+                moved = moved_aside;
                 match args.verify {
                     true => replay.first_difference(out).map_err(Failure::input),
                     false => Ok(None),
@@ -139,8 +154,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         }
     };
     progress.end();
-    say_moved_aside(&report);
+    say_moved_aside(&moved);
     let Some(difference) = difference? else {
+        args.sum_up(&replay);
         return Ok(ExitCode::SUCCESS);
     };
     let version = match replay.program() {
@@ -150,6 +166,26 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     Err(Failure::run(format!(
         "the replay differs: {difference}{version}"
     )))
+}
+
+impl ReplayArgs {
+    /// Says what was done.
+    fn sum_up(&self, replay: &Replay) {
+        let seconds = replay.ticks() as f64 / f64::from(TICKS_PER_SECOND);
+        let folder = self.recording.display();
+        if self.verify {
+            self.quiet.sum_up(format_args!(
+                "{folder}: {seconds:.1} s replayed, the same to the byte"
+            ));
+        } else if self.out.is_none() {
+            self.quiet.sum_up(format_args!(
+                "{folder}: {seconds:.1} s replayed; --verify compares them with the recording"
+            ));
+        }
+        if let Some(out) = &self.out {
+            self.quiet.sum_up_recording(out);
+        }
+    }
 }
 
 /// Lets a script watch, and then act.

@@ -9,7 +9,12 @@ use crate::{
 use clap::Args;
 
 use super::{
-    Failure, Output, cut_off::say_if_cut_off, progress::ProgressLine, recordings::recordings_in,
+    Failure,
+    cut_off::say_if_cut_off,
+    progress::ProgressLine,
+    quiet::{QuietOption, counted},
+    recordings::recordings_in,
+    result_file::{ResultFile, ResultKind},
     terminal::show_warnings,
 };
 
@@ -18,6 +23,11 @@ pub(super) struct ReportArgs {
     /// Folders of recordings, or folders that hold them; and last the page, a file such as `demo.html`
     #[arg(value_names = ["DIR", "OUT"], num_args = 2.., required = true)]
     paths: Vec<PathBuf>,
+    /// Replace the page that is there
+    #[arg(long)]
+    replace: bool,
+    #[command(flatten)]
+    quiet: QuietOption,
 }
 
 /// Makes the page.
@@ -32,9 +42,12 @@ pub(super) fn run(args: &ReportArgs) -> Result<ExitCode, Failure> {
             "{out} is a folder; the last name is that of the page, such as report.html"
         )));
     }
+    let page_path = out;
+    let out = match args.replace {
+        true => ResultFile::replacing(out, ResultKind::Page),
+        false => ResultFile::new(out, ResultKind::Page),
+    }?;
     let recordings = recordings_in(folders)?;
-    let out = Output::File(out.clone());
-    out.check()?;
     let read = |recording: &PathBuf| {
         let reader = RecordingReader::open(recording).map_err(Failure::input)?;
         say_if_cut_off(&reader, "reported");
@@ -54,5 +67,8 @@ pub(super) fn run(args: &ReportArgs) -> Result<ExitCode, Failure> {
         }
     };
     out.write(page.as_bytes())?;
+    let count = counted(recordings.len(), "recording");
+    args.quiet
+        .sum_up(format_args!("{}: a page of {count}", page_path.display()));
     Ok(ExitCode::SUCCESS)
 }

@@ -10,6 +10,7 @@ use super::{
     explain::{print, read},
     range::NumberRange,
     terminal::show_warnings,
+    wait::WaitOption,
 };
 
 const STEPS: NumberRange<usize> = NumberRange::whole(1, 1_000_000);
@@ -31,6 +32,8 @@ pub(super) struct RequireArgs {
     /// Remove these requirements instead; without any, all requirements on the object
     #[arg(long, requires = "step")]
     remove: bool,
+    #[command(flatten)]
+    wait: WaitOption,
 }
 
 /// Prints or changes the requirements on the objects of a recording.
@@ -39,8 +42,8 @@ pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
     if let Some(number) = args.step {
         let task = Task::read(&args.recording).map_err(Failure::input)?;
         // A requirement that can never hold is read, so that it can be removed.
-        let requirements = Requirements::read(&args.recording);
-        let mut requirements = requirements.map_err(Failure::input)?;
+        let edit = Requirements::edit(&args.recording, &args.wait.storage());
+        let mut edit = edit.map_err(Failure::input)?;
         let step = task
             .step(number)
             .ok_or_else(|| Failure::input(format!("the demonstration has no step {number}")))?;
@@ -54,8 +57,8 @@ pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
                 step.object
             ))
         })?;
-        change(&mut requirements, &task, role, args)?;
-        requirements.write(&args.recording).map_err(Failure::run)?;
+        change(&mut edit.requirements, &task, role, args)?;
+        edit.finish().map_err(Failure::run)?;
     }
     let (task, requirements) = read(&args.recording, &Furniture::default())?;
     let lines = task.roles.iter().map(|role| {

@@ -27,7 +27,7 @@ enum RobotTask {
     /// Print the joint angles that bring a hand to a pose, for poses from standard input
     Ik,
     /// Say what a description holds, and what it lacks or has wrong, with file, line and remedy; exit code 2 if no robot can be made of it
-    Check,
+    Check(describe::SurveyArgs),
     /// Write a first robot.ron for a URDF: limbs and grippers found in its tree, and questions where it says nothing
     New(describe::DraftArgs),
     /// Print where the head camera is, by the edges of the table in its picture
@@ -39,7 +39,7 @@ pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
     match &args.task {
         RobotTask::Fk => kinematics::answer(Question::Forward, robot),
         RobotTask::Ik => kinematics::answer(Question::Inverse, robot),
-        RobotTask::Check => describe::check(robot),
+        RobotTask::Check(args) => describe::check(args.file.as_deref().or(robot)),
         RobotTask::New(_) if robot.is_some() => Err(Failure::input(
             "`robot new` takes a URDF and makes a robot of it; --robot names one that is there",
         )),

@@ -1,35 +1,34 @@
 //! `tabletop run`: the simulation without a window.
 
-use std::{
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-    process::ExitCode,
-    time::Instant,
-};
+use std::{collections::BTreeSet, path::Path, process::ExitCode, time::Instant};
 
 use crate::{
     TabletopSimPlugins,
-    assembly::{IdAllocator, assemble},
     core::{
         RecordingCommand, RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick,
         StepApp as _, TICKS_PER_SECOND, Table, WriteCommand as _, seen_from,
     },
     final_state, headless_app_with,
+    recorder::RecordingReport,
+    scene::{IdAllocator, assemble},
     script::shut_down,
-    shipped::{task_reader, true_path},
+    shipped::true_path,
     shown_task::shown_task,
+    storage::is_taken,
     task::Furniture,
-    task_files::save_task,
+    task_files::save_new_task,
 };
 use bevy::prelude::*;
 use tabletop_scenario::{Outcome, Scenario, ScenarioRun, Step};
 
 use super::{
-    Failure, Output, WRONG_INPUT,
+    Failure, Output,
     duration::{pass, ticks},
     explain::read,
+    quiet::counted,
     real,
     recorded::{self, say_moved_aside},
+    result_file::{ResultKind, require_outside},
     run_arguments::RunArgs,
     script::Script,
     seeds,
@@ -51,9 +50,9 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
-            let robot = args.robot.plugin()?;
+            let robot = args.real.body(args.robot.plugin()?)?;
             let hand_pictures = args.hand_cameras.of(&robot)?;
-            let (scene, result) = scene_of(setup, &args.allowed.folders)?;
+            let scene = args.read_faultless(setup).map_err(Failure::input)?;
             let plugins = args.plugins(
                 robot.clone(),
                 args.record.as_deref(),
@@ -72,45 +71,32 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
+            // The last tick that is recorded is still the real robot's.
+            let recorded = recorded::finish(&mut app);
             real::release(&mut app);
             let ends = args.write_ends(&app);
-            let recorded = recorded::finish(&mut app);
             args.sum_up(&true_path(setup), "", &app, start);
-            say_moved_aside(&recorded.as_ref().cloned().unwrap_or_default());
+            recorded
+                .iter()
+                .for_each(|report| args.sum_up_recording(report));
+            say_moved_aside(recorded.iter().flat_map(|report| &report.moved_aside));
             Failure::of_all([script, recorded.map(drop), ends])?;
-            Ok(result)
+            Ok(ExitCode::SUCCESS)
         }
     }
 }
 
-/// Simulates a task file for this many seconds, and writes the final poses of all objects. Its faults are reported and do
-/// not stop the run, but give exit code 2.
+/// Simulates a scene for this many seconds, and writes the final poses of all objects.
 pub(super) fn simulate(
-    setup: &Path,
-    allowed: &[PathBuf],
+    scene: SceneSpec,
     seconds: f64,
     final_state: &Output,
 ) -> Result<ExitCode, Failure> {
-    let (scene, result) = scene_of(setup, allowed)?;
     let mut app = headless_app_with(TabletopSimPlugins);
     put_on_table(scene, &mut app);
     pass(&mut app, ticks(seconds));
     write_final_state(&app, final_state)?;
-    Ok(result)
-}
-
-/// The scene of a task file, and the exit code for its faults, which are reported.
-fn scene_of(setup: &Path, allowed: &[PathBuf]) -> Result<(SceneSpec, ExitCode), Failure> {
-    let reader = task_reader().allowing(allowed);
-    let task = reader.read(setup).map_err(Failure::input)?;
-    for fault in &task.faults {
-        say(fault);
-    }
-    let result = match task.faults.is_empty() {
-        true => ExitCode::SUCCESS,
-        false => ExitCode::from(WRONG_INPUT),
-    };
-    Ok((task.scene, result))
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Puts a scene on the table in the first tick.
@@ -170,9 +156,9 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         Ok(())
     });
     shut_down(app.world_mut());
+    let recorded = recorded::finish(&mut app).map_err(|failure| failure.unless_said(&said));
     real::release(&mut app);
     let ends = args.write_ends(&app);
-    let recorded = recorded::finish(&mut app).map_err(|failure| failure.unless_said(&said));
     let run = app.world().resource::<ScenarioRun>();
     let done = run.steps_done() - usize::from(scenario.setup.is_some()).min(run.steps_done());
     let done = match scenario.steps.len() {
@@ -186,7 +172,8 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     if args.record.is_some() && outcome.is_ok() && recorded.is_ok() && report.started == 0 {
         say("tabletop: nothing was recorded: the scenario has no Start");
     }
-    say_moved_aside(&report);
+    args.sum_up_recording(&report);
+    say_moved_aside(&report.moved_aside);
     Failure::of_all([outcome, recorded.map(drop), ends, script.result()])?;
     Ok(ExitCode::SUCCESS)
 }
@@ -251,27 +238,48 @@ impl RunArgs {
 
     /// Checks that the results of the end of a run can be written.
     fn check_ends(&self) -> Result<(), Failure> {
-        if let Some(path) = self.save.as_deref().filter(|path| path.exists()) {
-            let path = path.display();
-            let reason = format!("{path}: it exists, and --save replaces nothing; name a new file");
-            return Err(Failure::input(reason));
+        let recording: Vec<_> = self.record.as_deref().into_iter().collect();
+        if let Some(path) = self.save.as_deref() {
+            if is_taken(path) {
+                let path = path.display();
+                let reason =
+                    format!("{path}: it exists, and --save replaces nothing; name a new file");
+                return Err(Failure::input(reason));
+            }
+            require_outside(path, &recording)?;
         }
-        let mut outputs = self.final_state.iter().chain(&self.final_robot);
-        outputs.try_for_each(Output::check)
+        for (output, kind) in [
+            (&self.final_state, ResultKind::Table),
+            (&self.final_robot, ResultKind::Json),
+        ] {
+            if let Some(output) = output {
+                output.check(kind)?;
+            }
+            if let Some(Output::File(path)) = output {
+                require_outside(path, &recording)?;
+            }
+        }
+        self.record
+            .as_deref()
+            .map_or(Ok(()), |folder| require_outside(folder, &[]))
     }
 
     /// Sums up the run: its work, its duration, and its file.
     fn sum_up(&self, file: &Path, done: &str, app: &App, start: Instant) {
-        if self.quiet {
-            return;
-        }
         let file = file.display();
         let ticks = app.world().resource::<SimTick>().0;
         let simulated = ticks as f64 / f64::from(TICKS_PER_SECOND);
         let real = start.elapsed().as_secs_f64();
-        say(format_args!(
-            "tabletop: {file}: {done}{simulated:.2} s simulated in {real:.2} s"
+        self.quiet.sum_up(format_args!(
+            "{file}: {done}{simulated:.2} s simulated in {real:.2} s"
         ));
+    }
+
+    /// Says which recording was made, if one was.
+    fn sum_up_recording(&self, report: &RecordingReport) {
+        if let Some(folder) = self.record.as_deref().filter(|_| report.started > 0) {
+            self.quiet.sum_up_recording(folder);
+        }
     }
 
     /// Writes the results of the end of a run.
@@ -290,20 +298,12 @@ impl RunArgs {
 /// Saves the final state as a task file, and reports the parts that a task file cannot express.
 fn save(app: &App, path: &Path) -> Result<(), Failure> {
     let name = path.display();
-    let unsaid = save_task(app.world(), path)
+    let unsaid = save_new_task(app.world(), path)
         .map_err(|error| Failure::run(format!("{name}: it cannot be saved: {error}")))?;
     for unsaid in unsaid {
         say(format_args!("tabletop: {name}: {unsaid}"));
     }
     Ok(())
-}
-
-/// A number of things, in words.
-fn counted(count: usize, of_what: &str) -> String {
-    match count {
-        1 => format!("1 {of_what}"),
-        count => format!("{count} {of_what}s"),
-    }
 }
 
 fn write_final_robot(app: &App, output: &Output) -> Result<(), Failure> {
@@ -322,7 +322,7 @@ fn write_final_state(app: &App, output: &Output) -> Result<(), Failure> {
 mod tests {
     use std::fs;
 
-    use crate::{core::ObjectIndex, storage::TemporaryFolder};
+    use crate::{core::ObjectIndex, shipped::read_faultless_task, storage::TemporaryFolder};
 
     use super::*;
 
@@ -332,7 +332,7 @@ mod tests {
         let setup = folder.path().join("setup.xml");
         let text = crate::shipped::read_text(Path::new(DEFAULT_SETUP)).unwrap();
         fs::write(&setup, text).unwrap();
-        let (scene, _) = scene_of(&setup, &[]).map_err(|_| "it has faults").unwrap();
+        let scene = read_faultless_task(&setup, &[]).unwrap();
         fs::remove_file(&setup).unwrap();
         let mut app = headless_app_with(TabletopSimPlugins);
         put_on_table(scene, &mut app);

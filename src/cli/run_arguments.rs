@@ -16,12 +16,14 @@ use super::{
     duration::{SECONDS, ticks},
     hand_cameras::HandCameraOption,
     jobs::JOBS,
+    quiet::QuietOption,
     range::SEEDS,
     real::{self, RealOptions},
     robot_options::{EngineOptions, RobotOptions, script},
     script::headless_settings,
     seed_range::seed_range,
     shard::ShardOption,
+    wait::WaitOption,
 };
 use crate::{
     TabletopSimPlugins,
@@ -29,14 +31,15 @@ use crate::{
     real::RealRobotPlugin,
     recorder::{HandPictures, RecorderPlugin, UnrecordedPlugin},
     robot::RobotPlugin,
-    script::{FieldPolicy, ScriptPlugin, ScriptSettings},
+    script::ScriptPlugin,
     shipped::{read_faultless_task, read_scenario, true_path},
 };
 
 #[derive(Args)]
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
-#[command(mut_group("HandCameraOption", |options| options.requires("record")))]
+#[command(mut_group("HandCameraOption", |options| options.requires("record").conflicts_with("real_robot")))]
 #[command(mut_group("ShardOption", |options| options.requires("seeds")))]
+#[command(mut_arg("no_wait", |option| option.requires("seeds")))]
 #[command(group = ArgGroup::new("recordable").args(["scenario", "shadow", "real"]).multiple(true))]
 pub(super) struct RunArgs {
     /// The scenario to perform (docs/scenarios.md); exit code 1 if one of its steps fails
@@ -103,9 +106,10 @@ pub(super) struct RunArgs {
     pub robot: RobotOptions,
     #[command(flatten)]
     pub real: RealOptions,
-    /// Leave out the last line, which sums up the run
-    #[arg(long, short)]
-    pub quiet: bool,
+    #[command(flatten)]
+    pub quiet: QuietOption,
+    #[command(flatten)]
+    pub wait: WaitOption,
 }
 
 impl RunArgs {
@@ -116,7 +120,7 @@ impl RunArgs {
         if let Some(setup) = &self.setup {
             scenario.begin_with(&true_path(setup));
         }
-        let robot = self.robot.plugin()?;
+        let robot = self.real.body(self.robot.plugin()?)?;
         let layout = robot.description.as_ref().map(|robot| &robot.layout);
         let checked = scenario.check_for(layout.unwrap_or(RobotLayout::baxter()));
         checked.map_err(Failure::input)?;
@@ -132,18 +136,9 @@ impl RunArgs {
         Ok(program)
     }
 
-    /// The settings of the script. One that moves a real robot is told nothing that only a simulation knows.
-    fn script_settings(&self) -> Result<ScriptSettings, Failure> {
-        let mut settings = headless_settings(&self.engine, self.script.as_deref())?;
-        if self.real.address().is_some() {
-            settings.objects = FieldPolicy::Never;
-        }
-        Ok(settings)
-    }
-
     /// The simulator with this robot, and the engine that was asked for.
     pub fn simulator(&self, robot: RobotPlugin) -> Result<PluginGroupBuilder, Failure> {
-        let settings = self.script_settings()?;
+        let settings = headless_settings(&self.engine, self.script.as_deref())?;
         let plugins = TabletopSimPlugins
             .build()
             .set(robot)

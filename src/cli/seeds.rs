@@ -40,7 +40,9 @@ pub(super) fn perform(path: &Path, seeds: Range<u64>, args: &RunArgs) -> Result<
     };
     let collection = match &args.record {
         Some(folder) => {
-            Some(Collection::open(folder, MANIFEST, &work.manifest()?).map_err(refused)?)
+            let storage = args.wait.storage();
+            let collection = Collection::open(folder, MANIFEST, &work.manifest()?, &storage);
+            Some(collection.map_err(refused)?)
         }
         None => None,
     };
@@ -59,9 +61,9 @@ pub(super) fn perform(path: &Path, seeds: Range<u64>, args: &RunArgs) -> Result<
     let closed = collection.map_or(Ok(()), |it| it.close().map_err(refused));
     let tally = tally?;
     closed?;
-    if !args.quiet {
+    if !args.quiet.is_quiet() {
         let real = start.elapsed().as_secs_f64();
-        Output::Stdout.write(tally.summary(there, real).as_bytes())?;
+        Output::tell(&tally.summary(there, real))?;
     }
     Ok(ExitCode::from(u8::from(tally.failed > 0)))
 }

@@ -18,6 +18,7 @@ use super::{
     Failure, Output,
     jobs::{JOBS, at_a_time},
     progress::ProgressLine,
+    result_file::ResultKind,
     terminal::{say, show_warnings},
 };
 
@@ -60,8 +61,8 @@ pub(super) fn validate(args: &ValidateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let chosen = args.experiments()?;
     let [plot, json] = [&args.plot, &args.json].map(|file| file.clone().map(Output::from));
-    for output in [&plot, &json].into_iter().flatten() {
-        output.check()?;
+    for (output, kind) in [(&plot, ResultKind::Svg), (&json, ResultKind::Json)] {
+        output.iter().try_for_each(|output| output.check(kind))?;
     }
     let measurements = measure(&chosen, args.jobs)?;
     let peer = match args.against {
@@ -83,7 +84,7 @@ pub(super) fn validate(args: &ValidateArgs) -> Result<ExitCode, Failure> {
         .flatten()
         .any(|output| matches!(output, Output::Stdout));
     if !is_taken {
-        Output::Stdout.write(table(&measurements, peer.as_ref()).as_bytes())?;
+        Output::tell(&table(&measurements, peer.as_ref()))?;
     }
     let short = measurements.iter().filter(|it| !it.holds()).count();
     if short == 0 {

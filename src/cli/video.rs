@@ -3,19 +3,21 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use crate::{
-    film::{CameraPlace, Film, FilmCamera, FilmError, FilmFormat, FilmPace},
+    camera::{CameraPlace, CameraSpec, StudioError},
+    film::{Film, FilmError, FilmFormat, FilmPace},
     replay::Replay,
 };
 use clap::Args;
 
 use super::{
-    Failure, Output,
+    Failure,
     allowed_paths::AllowedPaths,
+    cameras::{ANGLES_OF_VIEW, camera},
     cut_off::say_if_cut_off,
-    film_camera::{ANGLES_OF_VIEW, camera},
     picture_size::picture_size,
     progress::ProgressLine,
     range::NumberRange,
+    result_file::{ResultFile, ResultKind},
     terminal::{say, show_warnings},
 };
 
@@ -30,7 +32,7 @@ pub(super) struct VideoArgs {
     /// The camera: `head`, a hand camera such as `left_hand`, or a name with its location and, if it is not the centre of the table, the
     /// point that it looks at, in units of 10 cm: `side=14,0,8` or `side=14,0,8,0,0,1`
     #[arg(long, value_name = "CAMERA", value_parser = camera, default_value = "head")]
-    camera: FilmCamera,
+    camera: CameraSpec,
     /// The size of a picture, with sides from 1 to 8192 pixels, and 16777216 pixels at most [default: 640x480; on a contact sheet 320x240]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = picture_size)]
     size: Option<(u32, u32)>,
@@ -54,6 +56,9 @@ pub(super) struct VideoArgs {
     every: Option<f64>,
     #[command(flatten)]
     allowed: AllowedPaths,
+    /// Replace the video, animation or contact sheet that is there
+    #[arg(long)]
+    replace: bool,
 }
 
 const RATES: NumberRange<u32> = NumberRange::whole(1, 60);
@@ -71,8 +76,15 @@ pub(super) fn run(args: &VideoArgs) -> Result<ExitCode, Failure> {
             "{out}: expected a name that ends in .mp4, .gif or .png"
         ))
     })?;
-    let out = Output::File(args.out.clone());
-    out.check()?;
+    let kind = match format {
+        FilmFormat::Mp4 => ResultKind::Video,
+        FilmFormat::Gif => ResultKind::Animation,
+        FilmFormat::Png => ResultKind::Picture,
+    };
+    let out = match args.replace {
+        true => ResultFile::replacing(&args.out, kind),
+        false => ResultFile::new(&args.out, kind),
+    }?;
     let replay = Replay::read_allowing(&args.recording, &args.allowed.folders);
     let replay = replay.map_err(Failure::input)?;
     say_if_cut_off(replay.recording(), "filmed");
@@ -102,7 +114,7 @@ impl VideoArgs {
             // As wide as they are.
             (FilmFormat::Mp4 | FilmFormat::Gif, CameraPlace::Hand(_)) => (640, 400),
         });
-        let camera = FilmCamera {
+        let camera = CameraSpec {
             size: Some([width, height]),
             vertical_fov: self.fov.map(f32::to_radians),
             ..self.camera.clone()
@@ -124,9 +136,11 @@ fn failed(error: FilmError) -> Failure {
     match error {
         FilmError::Recording(_)
         | FilmError::Replay(_)
-        | FilmError::NoCamera { .. }
+        | FilmError::Camera(StudioError::NoCamera { .. })
         | FilmError::Size { .. }
         | FilmError::Foreign(_) => Failure::input(error),
-        FilmError::Unreadable(_) | FilmError::Failed(_) => Failure::run(error),
+        FilmError::Camera(StudioError::Failed(_))
+        | FilmError::Unreadable(_)
+        | FilmError::Failed(_) => Failure::run(error),
     }
 }

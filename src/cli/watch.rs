@@ -7,19 +7,21 @@ use std::{
 };
 
 use crate::{
-    assembly::IdAllocator,
+    RecordedRobot,
     camera::Camera,
     dataset::record_watched,
     recorder::{RecorderError, RecordingReader, read_picture},
+    replay::Replay,
+    scene::IdAllocator,
     shipped::read_faultless_task,
-    storage::Storage,
+    storage::{InnerFile, InnerPath, Storage},
     task::{Demonstration, Requirements, Task, color_name},
-    vision::{DescribedObject, Descriptions, calibrated},
-    watching::Watcher,
+    vision::{DescribedObject, Descriptions, KnownScenery, calibrated},
+    watching::{Doubt, Watcher},
 };
 use bevy::math::Vec3;
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, SimTick, TICKS_PER_SECOND, Table};
 use tabletop_geometry::{Pose, Rgb};
 
@@ -27,11 +29,12 @@ use super::{
     Failure,
     allowed_paths::AllowedPaths,
     cut_off::say_if_cut_off,
-    explain::{furniture, print, reported},
+    explain::{furniture, print, print_json, reported},
     head_camera::taking,
     import::failed,
     range::NumberRange,
     recorded::say_moved_aside,
+    result_file::require_outside,
     terminal::{say, show_warnings},
 };
 
@@ -70,7 +73,11 @@ struct PictureRoll {
     /// True if the first picture alone tells the shapes of the objects.
     is_described: bool,
     /// The pictures, each with its tick, from 0.
-    frames: Vec<(SimTick, PathBuf)>,
+    frames: Vec<(SimTick, InnerFile)>,
+    /// The tick of the recording that is the first of the pictures.
+    begin: SimTick,
+    /// The robot, if its joints are known.
+    robot: Option<RecordedRobot>,
     /// The true poses of the objects, by id, of each picture; empty if nobody knows them.
     truth: Vec<BTreeMap<String, Pose>>,
 }
@@ -78,11 +85,13 @@ struct PictureRoll {
 /// What a watcher has seen.
 struct WatchedRoll {
     demonstration: Demonstration,
-    /// The greatest distance, in units, of an object from where it was seen, picture by picture.
+    /// The times in which it was not sure.
+    doubts: Vec<Doubt>,
+    /// The greatest distance, in units, of an object from where it was seen, picture by picture; infinite if one was not seen yet.
     errors: Vec<f32>,
 }
 
-/// Prints the task that pictures show.
+/// Prints the task that pictures show. Exit code 1 if it is not sure of something.
 pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let setup = match &args.setup {
@@ -94,40 +103,77 @@ pub(super) fn watch(args: &WatchArgs) -> Result<ExitCode, Failure> {
         }
         None => None,
     };
+    if let Some(out) = &args.record {
+        require_outside(out, &[&args.folder])?;
+    }
     let pictures = pictures_in(&args.folder)?;
     let roll = match pictures.is_empty() {
         true => PictureRoll::of_recording(&args.folder, setup)?,
         false => PictureRoll::of_pictures(&args.folder, pictures, setup, args.rate)?,
     };
-    let frames = roll.frames.clone();
+    let (frames, camera) = (roll.frames.clone(), roll.camera);
     let watched = roll.watch(args.calibrate)?;
     if let Some(out) = &args.record {
-        let import = record_watched(out, &watched.demonstration, &frames).map_err(failed)?;
+        let import =
+            record_watched(out, &watched.demonstration, &frames, camera).map_err(failed)?;
         import
             .remarks
             .iter()
             .for_each(|remark| say(format_args!("tabletop: {remark}")));
-        say_moved_aside(&import.report);
+        say_moved_aside(&import.report.moved_aside);
     }
     let mut task = Task::of(&watched.demonstration);
     task.phrase(&Requirements::default());
+    let code = match watched.doubts.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
+    };
     if args.json {
-        let json = json!({ "task": task, "errors": watched.errors });
-        return print(&format!("{json:#}\n"));
+        let doubts: Vec<_> = watched.doubts.iter().map(json_of).collect();
+        let json = json!({ "task": task, "doubts": doubts, "errors": watched.errors });
+        return print_json(&json).map(|_| code);
     }
     let mut lines = reported(&task);
     if lines.is_empty() {
         lines.push("Nothing is moved for good.".into());
     }
+    lines.extend(watched.doubts.iter().map(sentence));
     if let Some(summary) = watched.summary() {
         lines.push(summary);
     }
-    print(&(lines.join("\n") + "\n"))
+    print(&(lines.join("\n") + "\n")).map(|_| code)
+}
+
+/// A doubt, in words.
+fn sentence(doubt: &Doubt) -> String {
+    let Doubt {
+        object,
+        from,
+        to,
+        is_never_seen,
+    } = doubt;
+    let [from, to] = [from, to].map(|tick| tick.0 as f64 / f64::from(TICKS_PER_SECOND));
+    match is_never_seen {
+        true => format!("Unsure: {object} was never surely seen."),
+        false => format!("Unsure: where {object} was from {from:.2} to {to:.2} s."),
+    }
+}
+
+fn json_of(doubt: &Doubt) -> Value {
+    json!({
+        "object": doubt.object,
+        "from": doubt.from,
+        "to": doubt.to,
+        "never_seen": doubt.is_never_seen,
+    })
 }
 
 /// The task that the pictures of a recording show, with its requirements in its sentences.
 pub(super) fn read_watched(recording: &Path) -> Result<(Task, Requirements), Failure> {
     let watched = PictureRoll::of_recording(recording, None)?.watch(false)?;
+    for doubt in &watched.doubts {
+        say(format_args!("tabletop: {}", sentence(doubt)));
+    }
     let mut task = Task::of(&watched.demonstration);
     let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
     task.phrase(&requirements);
@@ -168,6 +214,11 @@ impl PictureRoll {
             }
         }
         let truth = truth(&recording, &frames).map_err(Failure::input)?;
+        // What cannot be replayed does not tell which robot it shows.
+        let robot = match Replay::read(folder) {
+            Ok(replay) => RecordedRobot::of(&replay).map_err(Failure::input)?,
+            Err(_) => None,
+        };
         let first = recording.first_tick().0;
         let frames = frames.into_iter();
         let frames = frames.map(|(tick, path)| (SimTick(tick.0 - first), path));
@@ -178,6 +229,8 @@ impl PictureRoll {
             joints,
             is_described: false,
             frames: frames.collect(),
+            begin: SimTick(first),
+            robot,
             truth,
         })
     }
@@ -185,11 +238,11 @@ impl PictureRoll {
     /// The pictures of a folder, which are all that there is.
     fn of_pictures(
         folder: &Path,
-        pictures: Vec<PathBuf>,
+        pictures: Vec<InnerFile>,
         setup: Option<Setup>,
         rate: u64,
     ) -> Result<Self, Failure> {
-        let first = pictures.first().map(|path| read_picture(path));
+        let first = pictures.first().map(read_picture);
         let first = first.transpose().map_err(Failure::input)?;
         let first = first.unwrap_or_default();
         let camera = taking(&HeadCamera::default(), &first);
@@ -223,6 +276,8 @@ impl PictureRoll {
             joints,
             is_described,
             frames: frames.collect(),
+            begin: SimTick(0),
+            robot: None,
             truth: Vec::new(),
         })
     }
@@ -231,7 +286,7 @@ impl PictureRoll {
     ///
     /// # Errors
     /// One cannot be read.
-    fn watch(self, is_calibrated: bool) -> Result<WatchedRoll, Failure> {
+    fn watch(mut self, is_calibrated: bool) -> Result<WatchedRoll, Failure> {
         let mut camera = Camera::of_head(&self.camera, &self.table);
         if let (true, Some((_, path))) = (is_calibrated, self.frames.first()) {
             let picture = read_picture(path).map_err(Failure::input)?;
@@ -251,23 +306,32 @@ impl PictureRoll {
             if size != expected {
                 return Err(Failure::input(format!(
                     "{}: the picture has {} x {} pixels, and the camera {} x {}",
-                    path.display(),
+                    path.path().display(),
                     size[0],
                     size[1],
                     expected[0],
                     expected[1],
                 )));
             }
-            watcher.watch(*tick, &picture);
+            let links = self.robot.as_mut();
+            let scenery = KnownScenery {
+                figures: links.map_or_else(Vec::new, |robot| {
+                    robot.figures(SimTick(self.begin.0 + tick.0))
+                }),
+                solids: Vec::new(),
+            };
+            watcher.watch(*tick, &picture, &scenery);
             if let Some(truth) = self.truth.get(number) {
                 let distances = watcher.poses().filter_map(|(id, pose)| {
                     let true_pose = truth.get(id)?;
-                    Some(true_pose.location.distance(pose.location))
+                    let distance = |pose: Pose| true_pose.location.distance(pose.location);
+                    Some(pose.map_or(f32::INFINITY, distance))
                 });
                 errors.push(distances.fold(0.0, f32::max));
             }
         }
         Ok(WatchedRoll {
+            doubts: watcher.doubts(),
             demonstration: watcher.demonstration(),
             errors,
         })
@@ -277,13 +341,20 @@ impl PictureRoll {
 impl WatchedRoll {
     /// How far the objects were from where they were seen.
     fn summary(&self) -> Option<String> {
-        let mut errors = self.errors.clone();
+        let pictures = self.errors.len();
+        let seen = self.errors.iter().filter(|error| error.is_finite());
+        let mut errors: Vec<_> = seen.copied().collect();
         errors.sort_by(f32::total_cmp);
-        let last = errors.len().checked_sub(1)?;
+        let unseen = match pictures - errors.len() {
+            0 => String::new(),
+            unseen => format!("; an object was not seen yet in {unseen}"),
+        };
+        let Some(last) = errors.len().checked_sub(1) else {
+            return (pictures > 0).then(|| format!("{pictures} pictures{unseen}"));
+        };
         let share = |percent: usize| errors[last * percent / 100];
         Some(format!(
-            "{} pictures; greatest error of a pose: median {:.4}, 90 % {:.4}, 99 % {:.3}, at most {:.3} units",
-            errors.len(),
+            "{pictures} pictures; greatest error of a pose: median {:.4}, 90 % {:.4}, 99 % {:.3}, at most {:.3} units{unseen}",
             share(50),
             share(90),
             share(99),
@@ -313,20 +384,20 @@ fn named(descriptions: &Descriptions) -> Vec<ObjectSpec> {
 }
 
 /// The PNG files directly in a folder, in the order of their names. A recording has its pictures in folders of its segments.
-fn pictures_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn pictures_in(folder: &Path) -> Result<Vec<InnerFile>, Failure> {
     let entries = Storage::default().entries(folder);
     let entries = entries
         .map_err(|error| Failure::input(format!("cannot read {}: {error}", folder.display())))?;
-    let is_png = |path: &PathBuf| path.extension().is_some_and(|kind| kind == "png");
-    let mut pictures: Vec<_> = entries.into_iter().filter(is_png).collect();
-    pictures.sort();
-    Ok(pictures)
+    let is_png = |path: &Path| path.extension().is_some_and(|kind| kind == "png");
+    let names = entries.iter().filter(|path| is_png(path));
+    let names = names.filter_map(|path| InnerPath::name(path.file_name()?).ok());
+    Ok(names.map(|name| InnerFile::new(folder, name)).collect())
 }
 
 /// The true poses of the objects at each frame.
 fn truth(
     recording: &RecordingReader,
-    frames: &[(SimTick, PathBuf)],
+    frames: &[(SimTick, InnerFile)],
 ) -> Result<Vec<BTreeMap<String, Pose>>, RecorderError> {
     let objects = recording.session().scene.objects.iter();
     let mut poses: BTreeMap<_, _> = objects

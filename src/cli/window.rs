@@ -5,7 +5,11 @@ use std::{
     process::ExitCode,
 };
 
-use crate::{replay::Replay, script::ScriptSettings, shipped::task_reader};
+use crate::{
+    replay::Replay,
+    script::ScriptSettings,
+    shipped::{read_faultless_task, task_reader},
+};
 use clap::Args;
 
 use super::{
@@ -101,7 +105,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     if args.screenshot.is_some() {
         display.ask.get_or_insert(false);
     }
-    let robot = args.robot.plugin()?;
+    let robot = args.real.body(args.robot.plugin()?)?;
     let takes_picture = args.screenshot.is_some();
     let real = args.real.connect(&robot, &args.table()?)?;
     let address = args.real.address().map(ToString::to_string);
@@ -199,9 +203,10 @@ pub(super) fn play(_: Replay, _: ScriptSettings, _: Vec<PathBuf>) -> Result<Exit
 
 /// The state that the window would have shown after ten seconds, as a table.
 fn run_instead(setup: &Path, allowed: &[PathBuf]) -> Result<ExitCode, Failure> {
+    let scene = read_faultless_task(setup, allowed).map_err(Failure::input)?;
     say(format_args!(
         "tabletop: running {} for 10 s without a window",
         setup.display()
     ));
-    run::simulate(setup, allowed, 10.0, &Output::Stdout)
+    run::simulate(scene, 10.0, &Output::Stdout)
 }

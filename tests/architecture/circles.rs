@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::source::{Source, Use};
+use crate::source::{self, Source, Use};
 
 #[test]
 fn no_two_files_of_a_crate_need_each_other() {
@@ -26,16 +26,12 @@ fn no_two_files_of_a_crate_need_each_other() {
 
 /// The crates of this workspace and where their sources are.
 fn crates() -> Vec<(String, PathBuf)> {
+    let named = |folder: PathBuf| {
+        let name = folder.file_name().unwrap().to_string_lossy().into_owned();
+        (name, folder.join("src"))
+    };
+    let mut crates: Vec<_> = source::crates().into_iter().map(named).collect();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let members = fs::read_dir(root.join("crates")).unwrap();
-    let members = members.map(|entry| entry.unwrap().path());
-    let mut crates: Vec<_> = members
-        .filter(|folder| folder.join("Cargo.toml").is_file())
-        .map(|folder| {
-            let name = folder.file_name().unwrap().to_string_lossy().into_owned();
-            (name, folder.join("src"))
-        })
-        .collect();
     crates.push(("tabletop".to_owned(), root.join("src")));
     crates
 }

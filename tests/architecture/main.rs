@@ -1,406 +1,40 @@
-//! The arrows between the crates are those of ARCHITECTURE.md, and those between the files of a crate make no circle.
+//! No arrow between crates leads up to a higher floor, and those between the files of a crate make no circle.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod circles;
 mod files;
+mod map;
 mod names;
 mod platforms;
+mod real_robot;
+mod security;
 mod source;
 
-use std::{collections::BTreeSet, process::Command};
+use std::{collections::BTreeMap, path::Path, process::Command};
 
 use serde_json::Value;
 
-/// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 43] = [
-    Rule::new("tabletop_storage", &[]),
-    Rule::new("tabletop_geometry", &[]),
-    Rule::new("tabletop_core", &["tabletop_geometry"]),
-    Rule::new("tabletop_mesh", &["tabletop_core", "tabletop_geometry"]),
-    Rule::new(
-        "tabletop_xml",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_mesh",
-            "tabletop_storage",
-        ],
-    ),
-    Rule::new("tabletop_history", &["tabletop_core", "tabletop_geometry"]),
-    Rule::new(
-        "tabletop_physics",
-        &["tabletop_core", "tabletop_geometry", "tabletop_history"],
-    )
-    .with_rapier(),
-    Rule::new("tabletop_assembly", &["tabletop_core", "tabletop_geometry"]),
-    Rule::new(
-        "tabletop_scene",
-        &[
-            "tabletop_assembly",
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_history",
-            "tabletop_physics",
-        ],
-    )
-    .with_rapier(),
-    Rule::new(
-        "tabletop_demonstrator",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_history",
-            "tabletop_physics",
-        ],
-    )
-    .with_rapier(),
-    Rule::new(
-        "tabletop_mechanism",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_history",
-            "tabletop_physics",
-        ],
-    ),
-    Rule::new("tabletop_kinematics", &[]),
-    Rule::new(
-        "tabletop_robot",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_history",
-            "tabletop_kinematics",
-            "tabletop_mesh",
-            "tabletop_physics",
-            "tabletop_storage",
-        ],
-    )
-    .with_rapier(),
-    Rule::new(
-        "tabletop_drive",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_history",
-            "tabletop_kinematics",
-            "tabletop_physics",
-            "tabletop_robot",
-        ],
-    )
-    .with_rapier(),
-    Rule::new("tabletop_bridge", &["tabletop_storage"]),
-    Rule::new("tabletop_engine", &[]),
-    Rule::new(
-        "tabletop_script",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_perception",
-            "tabletop_engine",
-            "tabletop_storage",
-        ],
-    ),
-    Rule::new(
-        "tabletop_camera",
-        &["tabletop_core", "tabletop_geometry", "tabletop_history"],
-    ),
-    Rule::new(
-        "tabletop_vision",
-        &["tabletop_camera", "tabletop_core", "tabletop_geometry"],
-    ),
-    Rule::new(
-        "tabletop_recorder",
-        &["tabletop_core", "tabletop_geometry", "tabletop_storage"],
-    ),
-    Rule::new(
-        "tabletop_scenario",
-        &["tabletop_core", "tabletop_geometry", "tabletop_storage"],
-    ),
-    Rule::new(
-        "tabletop_task",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_recorder",
-            "tabletop_storage",
-        ],
-    ),
-    Rule::new(
-        "tabletop_controller",
-        &["tabletop_core", "tabletop_geometry", "tabletop_kinematics"],
-    ),
-    Rule::new(
-        "tabletop_planner",
-        &[
-            "tabletop_controller",
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_kinematics",
-            "tabletop_task",
-        ],
-    ),
-    Rule::new(
-        "tabletop_sim",
-        &[
-            "tabletop_assembly",
-            "tabletop_camera",
-            "tabletop_controller",
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_drive",
-            "tabletop_demonstrator",
-            "tabletop_history",
-            "tabletop_mechanism",
-            "tabletop_perception",
-            "tabletop_physics",
-            "tabletop_recorder",
-            "tabletop_robot",
-            "tabletop_scenario",
-            "tabletop_scene",
-            "tabletop_script",
-            "tabletop_storage",
-            "tabletop_xml",
-        ],
-    ),
-    Rule::new(
-        "tabletop_replay",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_history",
-            "tabletop_physics",
-            "tabletop_recorder",
-            "tabletop_robot",
-            "tabletop_sim",
-            "tabletop_storage",
-            "tabletop_task",
-            "tabletop_xml",
-        ],
-    ),
-    Rule::new(
-        "tabletop_episodes",
-        &[
-            "tabletop_assembly",
-            "tabletop_camera",
-            "tabletop_controller",
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_kinematics",
-            "tabletop_physics",
-            "tabletop_planner",
-            "tabletop_recorder",
-            "tabletop_replay",
-            "tabletop_robot",
-            "tabletop_sim",
-            "tabletop_storage",
-            "tabletop_task",
-            "tabletop_vision",
-        ],
-    ),
-    Rule::new(
-        "tabletop_perception",
-        &[
-            "tabletop_camera",
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_vision",
-        ],
-    ),
-    Rule::new(
-        "tabletop_real",
-        &[
-            "tabletop_bridge",
-            "tabletop_controller",
-            "tabletop_core",
-            "tabletop_planner",
-        ],
-    ),
-    Rule::new(
-        "tabletop_policy",
-        &[
-            "tabletop_camera",
-            "tabletop_controller",
-            "tabletop_core",
-            "tabletop_episodes",
-            "tabletop_geometry",
-            "tabletop_planner",
-            "tabletop_storage",
-            "tabletop_task",
-        ],
-    ),
-    Rule::new(
-        "tabletop_film",
-        &[
-            "tabletop_camera",
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_recorder",
-            "tabletop_replay",
-            "tabletop_robot",
-            "tabletop_sim",
-            "tabletop_task",
-        ],
-    ),
-    Rule::new(
-        "tabletop_environment",
-        &[
-            "tabletop_assembly",
-            "tabletop_core",
-            "tabletop_episodes",
-            "tabletop_film",
-            "tabletop_geometry",
-            "tabletop_history",
-            "tabletop_planner",
-            "tabletop_recorder",
-            "tabletop_replay",
-            "tabletop_robot",
-            "tabletop_scenario",
-            "tabletop_sim",
-        ],
-    ),
-    Rule::new(
-        "tabletop_validation",
-        &[
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_physics",
-            "tabletop_sim",
-        ],
-    ),
-    Rule::new("tabletop_python", &["tabletop"]),
-    Rule::new(
-        "tabletop_export",
-        &[
-            "tabletop_core",
-            "tabletop_episodes",
-            "tabletop_film",
-            "tabletop_geometry",
-            "tabletop_recorder",
-            "tabletop_replay",
-            "tabletop_robot",
-            "tabletop_storage",
-            "tabletop_task",
-        ],
-    ),
-    Rule::new(
-        "tabletop_report",
-        &[
-            "tabletop_core",
-            "tabletop_export",
-            "tabletop_geometry",
-            "tabletop_recorder",
-            "tabletop_task",
-        ],
-    ),
-    Rule::new(
-        "tabletop_dataset",
-        &[
-            "tabletop_assembly",
-            "tabletop_camera",
-            "tabletop_core",
-            "tabletop_export",
-            "tabletop_geometry",
-            "tabletop_recorder",
-            "tabletop_replay",
-            "tabletop_sim",
-            "tabletop_storage",
-            "tabletop_task",
-        ],
-    ),
-    Rule::new("tabletop_harness", &["tabletop_harness_macro"]),
-    Rule::new("tabletop_harness_macro", &[]),
-    Rule::new("tabletop_user", &["tabletop_core", "tabletop_geometry"]),
-    Rule::new(
-        "tabletop_view",
-        &["tabletop_core", "tabletop_geometry", "tabletop_user"],
-    )
-    .with_window(),
-    Rule::new(
-        "tabletop_gui",
-        &[
-            "tabletop_camera",
-            "tabletop_core",
-            "tabletop_geometry",
-            "tabletop_perception",
-            "tabletop_storage",
-            "tabletop_user",
-        ],
-    )
-    .with_window(),
-    Rule::new(
-        "tabletop",
-        &[
-            "tabletop_assembly",
-            "tabletop_controller",
-            "tabletop_core",
-            "tabletop_dataset",
-            "tabletop_geometry",
-            "tabletop_xml",
-            "tabletop_physics",
-            "tabletop_scene",
-            "tabletop_drive",
-            "tabletop_demonstrator",
-            "tabletop_environment",
-            "tabletop_export",
-            "tabletop_episodes",
-            "tabletop_film",
-            "tabletop_report",
-            "tabletop_mechanism",
-            "tabletop_history",
-            "tabletop_kinematics",
-            "tabletop_mesh",
-            "tabletop_robot",
-            "tabletop_script",
-            "tabletop_sim",
-            "tabletop_camera",
-            "tabletop_recorder",
-            "tabletop_replay",
-            "tabletop_scenario",
-            "tabletop_storage",
-            "tabletop_task",
-            "tabletop_planner",
-            "tabletop_policy",
-            "tabletop_user",
-            "tabletop_validation",
-            "tabletop_view",
-            "tabletop_perception",
-            "tabletop_bridge",
-            "tabletop_real",
-            "tabletop_vision",
-            "tabletop_gui",
-        ],
-    )
-    .with_window(),
+/// The floors of `crates/`, from the lowest up. A crate needs only its neighbours and those below.
+const FLOORS: [&str; 8] = [
+    "base", "world", "record", "robot", "run", "data", "window", "test",
 ];
 
-struct Rule {
-    name: &'static str,
-    ours: &'static [&'static str],
-    rapier: bool,
-    window: bool,
-}
+/// The crates that may name Rapier.
+const WITH_RAPIER: [&str; 5] = [
+    "tabletop_demonstrator",
+    "tabletop_drive",
+    "tabletop_physics",
+    "tabletop_robot",
+    "tabletop_scene",
+];
 
-impl Rule {
-    const fn new(name: &'static str, ours: &'static [&'static str]) -> Self {
-        Self {
-            name,
-            ours,
-            rapier: false,
-            window: false,
-        }
-    }
-
-    const fn with_rapier(mut self) -> Self {
-        self.rapier = true;
-        self
-    }
-
-    const fn with_window(mut self) -> Self {
-        self.window = true;
-        self
-    }
-}
+/// The crates that may draw or open windows.
+const WITH_WINDOW: [&str; 4] = [
+    "tabletop_gui",
+    "tabletop_input",
+    "tabletop_view",
+    "tabletop_window",
+];
 
 /// Features of Bevy that draw or open windows.
 const WINDOW_FEATURES: [&str; 12] = [
@@ -439,45 +73,60 @@ fn strings(list: &Value) -> impl Iterator<Item = &str> {
         .map(|item| item.as_str().unwrap())
 }
 
+/// The number of a package's floor; the facade and what is made of it are above all.
+fn floor_of(package: &Value) -> usize {
+    let manifest = Path::new(package["manifest_path"].as_str().unwrap());
+    let folders: Vec<_> = manifest.iter().rev().skip(2).take(2).collect();
+    match folders[..] {
+        [floor, crates] if crates == "crates" => FLOORS
+            .iter()
+            .position(|known| floor == *known)
+            .unwrap_or_else(|| panic!("{floor:?} is no floor of {FLOORS:?}")),
+        _ => FLOORS.len(),
+    }
+}
+
 #[test]
-fn crates_depend_only_as_the_table_allows() {
+fn crates_need_only_their_neighbours_and_those_below() {
     let metadata = metadata(&["--no-deps"]);
     let packages = metadata["packages"].as_array().unwrap();
-    let names: BTreeSet<_> = packages
+    let floors: BTreeMap<_, _> = packages
         .iter()
-        .map(|package| package["name"].as_str().unwrap())
+        .map(|package| (package["name"].as_str().unwrap(), floor_of(package)))
         .collect();
-    assert_eq!(names, RULES.iter().map(|rule| rule.name).collect());
-
-    for rule in &RULES {
-        let package = packages
+    assert!(
+        FLOORS
             .iter()
-            .find(|package| package["name"] == rule.name)
-            .unwrap();
+            .enumerate()
+            .all(|(floor, _)| floors.values().any(|it| *it == floor))
+    );
+    for package in packages {
+        let needing = package["name"].as_str().unwrap();
+        let (rapier, window) = (
+            WITH_RAPIER.contains(&needing),
+            WITH_WINDOW.contains(&needing),
+        );
         for dependency in package["dependencies"].as_array().unwrap() {
             let name = dependency["name"].as_str().unwrap();
             let for_tests = dependency["kind"] == "dev";
-            let arrow = format!("{} -> {name}", rule.name);
-            if name.starts_with("tabletop") && !for_tests {
-                assert!(rule.ours.contains(&name), "{arrow} is not in the table");
+            let arrow = format!("{needing} -> {name}");
+            if let Some(floor) = floors.get(name).filter(|_| !for_tests) {
+                assert!(*floor <= floors[needing], "{arrow} leads up");
             }
             if name.starts_with("bevy_rapier") && !for_tests {
-                assert!(
-                    rule.rapier,
-                    "{arrow}: only physics and its users name Rapier"
-                );
+                assert!(rapier, "{arrow}: only physics and its users name Rapier");
             }
-            let is_allowed = rule.name == "tabletop_mesh" && name == "parry3d";
+            let is_allowed = needing == "tabletop_mesh" && name == "parry3d";
             assert!(
                 name != "rapier3d" && (name != "parry3d" || is_allowed),
                 "{arrow}: only through bevy_rapier3d, or two of them are linked"
             );
             if name == "bevy_egui" {
-                assert!(rule.window, "{arrow}: only what shows may have panels");
+                assert!(window, "{arrow}: only what shows may have panels");
             }
             for feature in strings(&dependency["features"]) {
                 assert!(
-                    rule.window || !WINDOW_FEATURES.contains(&feature),
+                    window || !WINDOW_FEATURES.contains(&feature),
                     "{arrow} with {feature}: only view, gui and the root draw"
                 );
             }

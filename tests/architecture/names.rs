@@ -1,6 +1,10 @@
 //! Each type of the program has a name of its own, so that a name says which type is meant wherever it stands.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::PathBuf,
+};
 
 use crate::source::program;
 
@@ -11,7 +15,8 @@ const OF_PANELS: [&str; 3] = ["Model", "Request", "Sources"];
 fn no_two_types_have_one_name() {
     let mut places: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     for (file, source) in program() {
-        for name in source.types {
+        // A macro's `$Name` is none.
+        for name in source.types.into_iter().filter(|name| name != "$") {
             places.entry(name).or_default().push(file.clone());
         }
     }
@@ -24,4 +29,23 @@ fn no_two_types_have_one_name() {
         files.len() > 1
     });
     assert!(places.is_empty(), "types of one name: {places:#?}");
+}
+
+#[test]
+fn the_glossary_names_types_that_there_are() {
+    let types: BTreeSet<String> = program()
+        .into_iter()
+        .flat_map(|(_, source)| source.types)
+        .collect();
+    let page = fs::read_to_string("docs/glossary.md").unwrap();
+    let rows = page.lines().filter(|line| line.starts_with("| "));
+    let named: Vec<_> = rows
+        .flat_map(|row| row.split('`').skip(1).step_by(2))
+        .collect();
+    assert!(named.len() > 40, "{named:?}");
+    let unknown: Vec<_> = named
+        .iter()
+        .filter(|name| !types.contains(**name))
+        .collect();
+    assert!(unknown.is_empty(), "docs/glossary.md: {unknown:?}");
 }

@@ -6,6 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use crate::FLOORS;
+
 /// The names that a file has from elsewhere, those that it defines, and the paths that it spells out.
 #[derive(Default)]
 pub struct Source {
@@ -14,6 +16,8 @@ pub struct Source {
     /// Its types: structures, enumerations and traits, those of modules within it, too.
     pub types: Vec<String>,
     pub paths: Vec<Vec<String>>,
+    /// The arguments of its calls of `join`, without texts.
+    pub joined: Vec<Vec<String>>,
     /// Its conditions in `#[cfg]`, such as `unix`.
     pub conditions: BTreeSet<String>,
 }
@@ -34,12 +38,24 @@ const ITEMS: [&str; 9] = [
     "struct", "enum", "union", "trait", "type", "fn", "const", "static", "mod",
 ];
 
+/// The folders of the crates, floor by floor.
+pub fn crates() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
+    let folders = FLOORS.iter().flat_map(|floor| {
+        let entries = fs::read_dir(root.join(floor)).unwrap();
+        let mut folders: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+        folders.sort();
+        folders
+    });
+    folders.collect()
+}
+
 /// The files of the program, tests apart, by their paths in this workspace.
 pub fn program() -> Vec<(PathBuf, Source)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = Vec::new();
-    for entry in fs::read_dir(root.join("crates")).unwrap() {
-        collect(&entry.unwrap().path().join("src"), &mut files);
+    for folder in crates() {
+        collect(&folder.join("src"), &mut files);
     }
     collect(&root.join("src"), &mut files);
     let read = |path: PathBuf| {
@@ -78,6 +94,10 @@ impl Source {
             if rest.starts_with(&["#", "[", "cfg", "("].map(String::from)) {
                 let end = position(rest, "]");
                 source.conditions.insert(rest[4..end - 1].concat());
+            }
+            if rest.starts_with(&[".", "join", "("].map(String::from)) {
+                let end = position(rest, ")");
+                source.joined.push(rest[3..end].to_vec());
             }
             match token.as_str() {
                 "pub" => {
@@ -122,6 +142,7 @@ impl Source {
     fn add_inline_module(&mut self, module: Self) {
         self.types.extend(module.types);
         self.conditions.extend(module.conditions);
+        self.joined.extend(module.joined);
         let uses = module.uses.into_iter().filter(|it| !it.is_public);
         let uses = uses.map(|it| it.path);
         for mut path in module.paths.into_iter().chain(uses) {

@@ -1,9 +1,9 @@
 //! `tabletop edit`: a recording of another's segments.
 
-use std::fs;
+use std::{fs, thread, time::Duration};
 
 use crate::support::{
-    place, record, replays_to_the_same_bytes, scenario, stderr, stdout, tabletop,
+    command, place, record, replays_to_the_same_bytes, scenario, stderr, stdout, tabletop,
 };
 
 fn done(arguments: &[&str]) -> String {
@@ -109,11 +109,38 @@ fn an_edit_that_fails_is_refused_with_the_reason() {
 fn requirements_that_are_not_taken_over_are_named() {
     let demo = demo("edit_required_demo");
     let out = place("edit_required_out").to_str().unwrap().to_owned();
-    let edit = ["edit", &demo, &out, "--retime", "3=2"];
+    let edit = ["edit", &demo, &out, "--retime", "3=2", "--quiet"];
     assert_eq!(stderr(&tabletop(&edit)), "");
     fs::write(format!("{demo}/task.json"), "{}").unwrap();
     fs::remove_dir_all(&out).unwrap();
     let output = tabletop(&edit);
     assert_eq!(output.status.code(), Some(0));
     assert!(stderr(&output).contains("task.json: these requirements are not taken over"));
+}
+
+#[test]
+fn a_killed_edit_leaves_nothing_of_its_name() {
+    let demo = demo("edit_killed_demo");
+    let folder = place("edit_killed");
+    fs::create_dir(&folder).unwrap();
+    let out = folder.join("out");
+    let to = out.to_str().unwrap();
+    let mut edit = command(&["edit", &demo, to, "--retime", "1=100"])
+        .spawn()
+        .unwrap();
+    let is_begun = || fs::read_dir(&folder).unwrap().count() >= 2;
+    // The hidden folder and its lock.
+    while !is_begun() {
+        assert_eq!(edit.try_wait().unwrap(), None, "it has ended");
+        thread::sleep(Duration::from_millis(5));
+    }
+    thread::sleep(Duration::from_millis(100));
+    edit.kill().unwrap();
+    edit.wait().unwrap();
+    assert!(!out.exists());
+    let output = tabletop(&["edit", &demo, to, "--drop", "3-4"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let names = fs::read_dir(&folder).unwrap().count();
+    assert_eq!(names, 1, "something of the killed edit is left");
+    replays_to_the_same_bytes(&out);
 }

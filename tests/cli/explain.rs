@@ -50,6 +50,22 @@ fn a_stack_is_understood() {
 }
 
 #[test]
+fn grips_of_a_robot_are_understood_like_acts_of_hands() {
+    let demo = recorded("robot_stack");
+    means(
+        &demo,
+        &[
+            "1. Put the red block on the green block.",
+            "2. Put the blue block on the red block.",
+        ],
+    );
+    let json = stdout(&tabletop(&["explain", &demo, "--json"]));
+    let json: Value = serde_json::from_str(&json).unwrap();
+    let hands = &json["task"]["steps"][0]["hands"];
+    assert_eq!(*hands, serde_json::json!([{ "gripper": "right" }]));
+}
+
+#[test]
 fn a_box_with_a_lid_is_opened_filled_and_closed() {
     means(
         &recorded("lidbox"),
@@ -215,11 +231,11 @@ fn moving_an_object_away_and_back_is_a_detour() {
     let lines = explained(&shown("back", &(away.clone() + &back)));
     assert_eq!(lines[0], "Nothing is moved for good.");
     assert!(
-        lines[1].starts_with("Does not matter: RedBlock was put down on the way"),
+        lines[1].starts_with("Does not matter: the red block was put down on the way"),
         "{lines:?}"
     );
     assert!(
-        lines[2].starts_with("Does not matter: RedBlock was moved away and back"),
+        lines[2].starts_with("Does not matter: the red block was moved away and back"),
         "{lines:?}"
     );
 
@@ -270,7 +286,7 @@ fn turning_holding_removing_and_keeping_are_distinguished() {
         ),
         &[
             "1. Turn the red block by 40° counterclockwise.",
-            "Does not matter: GreenBlock was held in its place (1.13 to 1.65 s).",
+            "Does not matter: the green block was held in its place (1.13 to 1.65 s).",
         ],
     );
     means(
@@ -332,7 +348,7 @@ fn a_pushed_object_is_mentioned() {
     ));
     assert_eq!(lines.len(), 2, "{lines:?}");
     assert!(
-        lines[1].starts_with("2. Put the green block on"),
+        lines[1].starts_with("2. Move the green block with the red block on it to"),
         "{lines:?}"
     );
 }
@@ -533,7 +549,7 @@ fn objects_of_another_table_take_the_roles() {
     let error = bound(&demo, &other).unwrap_err();
     assert!(
         error.contains(
-            "the pink object and the pink object need an object each, and only b can be either"
+            "the first pink object and the second pink object need an object each, and only b can be either"
         ),
         "{error}"
     );

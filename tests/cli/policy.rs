@@ -4,10 +4,10 @@ use std::fs;
 
 use tabletop::{
     StillScene,
-    assembly::{IdAllocator, assemble},
     camera::Camera,
     core::HeadCamera,
     recorder::RecordingReader,
+    scene::{IdAllocator, assemble},
     scene_at_beginning,
 };
 
@@ -17,6 +17,7 @@ use crate::support::{place, record_shipped, stderr, stdout, tabletop};
 fn a_policy_is_learned_goes_on_where_it_was_cut_off_and_moves_the_robot() {
     let demo = record_shipped("red_on_blue", "policy");
     let file = place("policy.safetensors");
+    place("policy.svg");
     let file = file.to_str().unwrap();
     let learn = |samples: &str| {
         let options = ["--count", "8", "--trials", "2", "--samples", samples];

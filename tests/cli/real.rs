@@ -1,6 +1,6 @@
 //! `tabletop run --shadow` and `--real`, beside a mock robot behind a mock rosbridge server.
 
-#[path = "../../crates/tabletop_bridge/tests/rosbridge/mock.rs"]
+#[path = "../../crates/robot/tabletop_bridge/tests/rosbridge/mock.rs"]
 #[expect(dead_code, reason = "it has more than is needed here")]
 mod mock;
 
@@ -130,4 +130,102 @@ fn an_emergency_stop_ends_the_run_with_its_reason() {
         "{}",
         stderr(&output)
     );
+}
+
+/// A script that turns the first joint of each arm for long.
+fn lasting_script(name: &str, arms: usize) -> String {
+    let file = place(name);
+    let text = format!(
+        "
+def init(aux):
+    pass
+def callback(sensor, motor, aux):
+    motor.jointVelocities = [[0.3] + [0.0] * 6] * {arms}
+"
+    );
+    fs::write(&file, text).unwrap();
+    format!("python:{}", file.to_str().unwrap())
+}
+
+/// Waits until a joint has turned on from where it begins, and no longer than a minute.
+fn wait_for_motion(server: &MockServer, joint: &str) {
+    let home = server.robot().angles[joint];
+    let start = std::time::Instant::now();
+    while (server.robot().angles[joint] - home).abs() < 0.05 {
+        assert!(start.elapsed().as_secs() < 60, "it does not move");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+}
+
+#[cfg(unix)]
+fn signal(run: &std::process::Child, signal: &str) {
+    let mut kill = std::process::Command::new("kill");
+    kill.args([format!("-{signal}"), run.id().to_string()]);
+    assert!(kill.status().unwrap().success());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_brings_the_arm_to_rest_and_the_recording_is_whole() {
+    let server = baxter();
+    let script = lasting_script("real_interrupted.py", 2);
+    let address = server.address().to_string();
+    let demo = place("real_interrupted");
+    let demo = demo.to_str().unwrap();
+    let arguments = [
+        "run",
+        "--real",
+        &address,
+        "--yes",
+        "--script",
+        &script,
+        "--seconds",
+        "60",
+        "--record",
+        demo,
+    ];
+    let run = command(&arguments)
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_for_motion(&server, "left_s0");
+    signal(&run, "INT");
+    let output = run.wait_with_output().unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("Ctrl-C ended the program"), "{said}");
+    // Held by position, not left to its time limit.
+    assert_eq!(server.robot().modes.last(), Some(&1));
+    // It is whole, and shows nothing but motions of the robot.
+    let checked = stdout(&tabletop(&["dataset", "check", demo]));
+    let no_task = format!("{demo}: its task is empty: nothing is moved for good\n");
+    assert_eq!(checked, no_task + "1 episodes, 1 faults.\n");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_panda_rests_when_its_program_is_killed() {
+    let server = MockServer::start("panda");
+    let script = lasting_script("real_killed.py", 1);
+    let address = server.address().to_string();
+    let arguments = [
+        "run",
+        "--real",
+        &address,
+        "--yes",
+        "--script",
+        &script,
+        "--seconds",
+        "60",
+    ];
+    let mut run = command(&arguments).spawn().unwrap();
+    wait_for_motion(&server, "panda_joint1");
+    let before = server.robot().angles["panda_joint1"];
+    signal(&run, "KILL");
+    run.wait().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let rest = server.robot().angles["panda_joint1"];
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    assert_eq!(server.robot().angles["panda_joint1"], rest);
+    assert!((rest - before).abs() < 0.1, "{before} {rest}");
 }

@@ -63,7 +63,7 @@ fn motors_come_to_the_same_place() {
 fn an_invalid_description_is_wrong_input() {
     let file = place("no_robot.urdf");
     for (text, words) in [
-        (None, "No such file"),
+        (None, "no such file"),
         (
             Some("<robot name=\"r\"><link name=\"a\"/></robot>"),
             "left_s0",
@@ -135,7 +135,7 @@ fn a_description_reaches_no_urdf_outside_of_its_folder() {
         ("up/secret.urdf", 2, "leads out of its folder"),
         ("../secret.urdf", 2, "leads out of its folder"),
         (absolute.to_str().unwrap(), 2, "leads out of its folder"),
-        ("missing.urdf", 2, "No such file"),
+        ("missing.urdf", 2, "no such file"),
     ] {
         let named = format!("urdf: \"{urdf}\"");
         let text = panda("robot.ron").replace("urdf: \"panda.urdf\"", &named);
@@ -267,4 +267,50 @@ fn the_low_cost_arm_builds_a_tower() {
         &steps,
         &["--robot", "assets/so101/robot.ron"],
     );
+}
+
+/// What `imitate` and `run` refuse, `check` does not call a robot.
+#[test]
+fn numbers_without_bounds_are_refused_by_check_and_imitate() {
+    let demo = crate::support::record_shipped("red_on_blue", "robot_bounds_demo");
+    let folder = place("robot_bounds");
+    fs::create_dir_all(&folder).unwrap();
+    let read = |file: &str| fs::read_to_string(shipped("assets/panda", file)).unwrap();
+    let [urdf, layout] = ["panda.urdf", "robot.ron"].map(|file| (folder.join(file), read(file)));
+    let arm = layout.0.to_str().unwrap();
+    let finger = layout.1.find("finger: (").unwrap();
+    let finger = &layout.1[finger..][..layout.1[finger..].find(')').unwrap() + 1];
+    let origin = "xyz=\"-0.04 0 -0.45\"";
+    assert!(urdf.1.contains(origin), "{}", urdf.1);
+    for (file, from, to, words) in [
+        (&layout, finger, "finger: (1e30, 1e30, 1e30)", "finger"),
+        (&layout, finger, "finger: (101, 1, 1)", "finger"),
+        (&layout, "opening: (0, 0.8)", "opening: (0, 1e30)", "limits"),
+        (&layout, "height: 0", "height: 1e30", "base or camera"),
+        (&layout, "at: (0, 0, 0.1034)", "at: (0, 0, 1e30)", "axes"),
+        (&layout, "(0, 0, -1),", "(0, 0, 0),", "axes"),
+        (
+            &layout,
+            "home: -2.4",
+            "home: -2.4, limits: (-1e30, 1e30)",
+            "limits",
+        ),
+        (&layout, "home: -2.4", "home: -2.4, speed: 1e30", "speed"),
+        (&urdf, origin, "xyz=\"0 0 1e30\"", "over 1000 m away"),
+    ] {
+        for (path, text) in [&urdf, &layout] {
+            fs::write(path, text).unwrap();
+        }
+        assert!(file.1.contains(from), "{from}");
+        fs::write(&file.0, file.1.replacen(from, to, 1)).unwrap();
+        for arguments in [
+            &["robot", "check", "--robot", arm][..],
+            &["imitate", &demo, "--robot", arm],
+        ] {
+            let output = tabletop(arguments);
+            let said = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{arguments:?} {to}: {said}");
+            assert!(said.contains(words), "{arguments:?} {to}: {said}");
+        }
+    }
 }

@@ -128,6 +128,52 @@ fn the_plug_of_a_shut_valve_is_locked() {
 }
 
 #[test]
+fn a_sentence_is_done_as_tell_does_it() {
+    let said = "Put the red block on the green block.";
+    // `tell` lets everything settle for 30 ticks, also after the last step; a scenario's first and last ticks come with other steps.
+    let steps = format!("Wait(0.484), With(Right, Do({said:?})), Wait(0.484),");
+    let ended = run(
+        &scenario("told.ron", &steps),
+        &["--final-state", "-", "--quiet"],
+    );
+    assert_eq!(ended.status.code(), Some(0), "{}", stderr(&ended));
+    let setup = shipped("tablesetup", "default.xml");
+    let setup = setup.to_str().unwrap();
+    let told = tabletop(&["tell", said, "--setup", setup, "--final-state", "-"]);
+    assert_eq!(stdout(&ended), stdout(&told));
+    let states = stdout(&told);
+    let red = states.lines().find(|row| row.starts_with("RedBlock,"));
+    let height: f32 = red.unwrap().split(',').nth(3).unwrap().parse().unwrap();
+    assert!(height > 2.9, "{states}");
+}
+
+#[test]
+fn a_sentence_that_is_none_or_cannot_be_done_is_a_fault_of_its_step() {
+    let wrong = scenario(
+        "told_wrong.ron",
+        "Do(\"Put every red blokc into the box.\"),",
+    );
+    let output = run(&wrong, &[]);
+    assert_eq!(output.status.code(), Some(2));
+    let place = format!("{}:2:1: Do(", wrong.display());
+    let said = stderr(&output);
+    assert!(said.contains(&place) && said.contains("`blokc`"), "{said}");
+    assert!(said.contains("Put every red block into the box."), "{said}");
+
+    let output = run(
+        &scenario(
+            "told_impossible.ron",
+            "Do(\"Put the pink block into the box.\"),",
+        ),
+        &[],
+    );
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("told_impossible.ron:2:1: Do("), "{said}");
+    assert!(said.contains("pink block"), "{said}");
+}
+
+#[test]
 fn a_run_ends_with_a_summary() {
     let path = scenario(
         "done.ron",
@@ -444,7 +490,7 @@ fn a_recording_ends_with_its_scenario() {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         assert_eq!(stderr(&output), reported);
         if reported.is_empty() {
-            let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+            let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify", "--quiet"]);
             assert_eq!(
                 (output.status.code(), stderr(&output)),
                 (Some(0), String::new())

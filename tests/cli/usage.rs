@@ -72,3 +72,26 @@ fn help_and_version_are_results() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("Usage: tabletop robot"));
 }
+
+#[test]
+fn options_before_a_command_are_refused_with_the_line_that_was_meant() {
+    for (arguments, meant) in [
+        (
+            &["--seed", "7", "imitate", "demo"][..],
+            "imitate demo --seed 7",
+        ),
+        (
+            &["--setup", "none.xml", "explain", "demo"],
+            "explain demo --setup none.xml",
+        ),
+    ] {
+        let output = tabletop(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = stderr(&output);
+        assert!(
+            said.starts_with("error: options of a command come after it"),
+            "{said}"
+        );
+        assert!(said.contains(meant), "{said}");
+    }
+}

@@ -14,7 +14,7 @@ fn measurements_are_a_table_a_chart_and_json() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let table = stdout(&output);
     assert!(table.starts_with("| experiment"), "{table}");
-    assert_eq!(table.lines().count(), 2 + 4, "{table}");
+    assert_eq!(table.lines().count(), 2 + 5, "{table}");
     let rows: Value = serde_json::from_slice(&fs::read(json).unwrap()).unwrap();
     let names = rows.as_array().unwrap().iter().map(|row| &row["name"]);
     let named = [
@@ -22,10 +22,11 @@ fn measurements_are_a_table_a_chart_and_json() {
         "fall-ball: speed",
         "fall-cube: way",
         "fall-cube: speed",
+        "fall-past-edge: speed aside",
     ];
     assert!(names.eq(&named), "{rows}");
     let svg = fs::read_to_string(plot).unwrap();
-    assert_eq!(svg.matches("class=\"held\"").count(), 4, "{svg}");
+    assert_eq!(svg.matches("class=\"held\"").count(), 5, "{svg}");
 }
 
 #[test]

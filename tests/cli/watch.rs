@@ -3,9 +3,9 @@
 use std::fs;
 
 use serde_json::Value;
-use tabletop::{core::Picture, film::Canvas, recorder::read_picture};
+use tabletop::{film::Canvas, recorder::read_picture, storage::InnerFile};
 
-use crate::support::{place, record_shipped, stderr, stdout, tabletop};
+use crate::support::{files, place, record_shipped, stderr, stdout, tabletop};
 
 fn recorded(scenario: &str, by: &str) -> String {
     record_shipped(scenario, &format!("watch_{by}_{scenario}"))
@@ -100,6 +100,63 @@ fn a_folder_of_pictures_is_watched_with_a_task_file() {
     assert_eq!(stdout(&output), told);
 }
 
+/// A recording with its pictures changed, part by part.
+fn with_pictures_changed(demo: &str, name: &str, change: impl Fn(u8) -> u8) -> String {
+    let out = place(name);
+    let out = out.to_str().unwrap();
+    assert!(tabletop(&["watch", demo, "--record", out]).status.success());
+    for file in files(out.as_ref())
+        .into_keys()
+        .filter(|file| file.ends_with(".png"))
+    {
+        let path = format!("{out}/{file}");
+        let mut picture = read_picture(&InnerFile::at(path.as_ref()).unwrap()).unwrap();
+        picture
+            .rgb
+            .iter_mut()
+            .for_each(|part| *part = change(*part));
+        fs::write(path, Canvas::of(&picture).png().unwrap()).unwrap();
+    }
+    out.to_owned()
+}
+
+#[test]
+fn pictures_of_another_brightness_show_the_same_task() {
+    let demo = recorded("stack_three", "brightness");
+    let told = stdout(&tabletop(&["explain", &demo]));
+    for (name, gain, black) in [
+        ("darker", 0.7, 0.0),
+        ("brighter", 1.2, 0.0),
+        ("pale", 0.8, 25.0),
+    ] {
+        let change = |part: u8| (f32::from(part) * gain + black).round().min(255.0) as u8;
+        let changed = with_pictures_changed(&demo, &format!("watch_{name}"), change);
+        let output = tabletop(&["watch", &changed]);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", stdout(&output));
+        assert_eq!(seen(&[&changed]), told, "{name}");
+    }
+}
+
+#[test]
+fn what_was_not_seen_is_said() {
+    let demo = recorded("stack_three", "unsure");
+    let empty = with_pictures_changed(&demo, "watch_nothing", |_| 0);
+    let output = tabletop(&["watch", &empty]);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+    for name in ["Red", "Green", "Blue"] {
+        let line = format!("Unsure: {name} was never surely seen.");
+        assert!(stdout(&output).contains(&line), "{}", stdout(&output));
+    }
+    let output = tabletop(&["watch", &empty, "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let json: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let doubts = json["doubts"].as_array().unwrap();
+    assert!(
+        doubts.len() == 3 && doubts.iter().all(|it| it["never_seen"] == true),
+        "{json}"
+    );
+}
+
 #[test]
 fn what_cannot_be_watched_is_said() {
     let empty = place("watch_empty");
@@ -129,19 +186,11 @@ fn pictures_of_another_size_are_watched_and_none_may_differ() {
     let demo = recorded("stack_three", "size");
     let pictures = place("watch_sizes");
     fs::create_dir_all(&pictures).unwrap();
-    let small = read_picture(format!("{demo}/0/0.png").as_ref()).unwrap();
-    let (width, height) = (2 * small.width, 2 * small.height);
-    let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column / 2, row / 2)));
-    let large = Picture {
-        width,
-        height,
-        rgb: pixels
-            .flat_map(|(column, row)| small.color(column, row).unwrap())
-            .collect(),
-        depth: vec![0.0; (width * height) as usize],
-        objects: vec![0; (width * height) as usize],
-    };
-    let large = Canvas::of(&large).png().unwrap();
+    let large = place("watch_large");
+    let large = large.to_str().unwrap();
+    let drawn = tabletop(&["replay", &demo, "--render", "400x300", "--out", large]);
+    assert!(drawn.status.success(), "{}", stderr(&drawn));
+    let large = fs::read(format!("{large}/0/0.png")).unwrap();
     for number in 0..3 {
         fs::write(pictures.join(format!("{number}.png")), &large).unwrap();
     }

@@ -5,6 +5,7 @@
 #[expect(dead_code, reason = "these tests need a part of it")]
 mod demonstration;
 mod examples;
+mod guarded_ways;
 mod panda;
 mod real_robot;
 mod scripts;

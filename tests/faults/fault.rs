@@ -18,11 +18,12 @@ impl Fault {
         Self { calls, error }
     }
 
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::new("write", "ENOSPC"),
         Self::new("write", "EIO"),
         Self::new("openat", "EIO"),
         Self::new("rename", "ENOSPC"),
+        Self::new("linkat", "EPERM"),
         Self::new("mkdir", "ENOSPC"),
         Self::new("unlink", "EIO"),
         Self::new("rmdir", "EIO"),

@@ -5,9 +5,10 @@ use std::{collections::BTreeMap, env, ops::Range, panic};
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{ChainSpec, Drive, Face, LidBoxSpec, ObjectEdit, RobotMode},
+    core::{ChainSpec, Drive, Face, LidBoxSpec, MeasuredJoint, ObjectEdit, RobotMode},
     prelude::*,
 };
+use tabletop_harness::seeds;
 
 use crate::{
     demonstration::{Demonstration, difference_of_replay},
@@ -25,15 +26,6 @@ const WITHIN_REACH: [(Arm, Vec3); 2] = [
     (Arm::Left, Vec3::new(-3.0, -3.0, 0.45)),
     (Arm::Right, Vec3::new(3.0, -3.0, 0.45)),
 ];
-
-/// The seeds to try: `SEEDS=1000..2000` looks for more.
-fn seeds(default: Range<u64>) -> Range<u64> {
-    let Ok(range) = env::var("SEEDS") else {
-        return default;
-    };
-    let (first, end) = range.split_once("..").unwrap();
-    first.parse().unwrap()..end.parse().unwrap()
-}
 
 /// Numbers over many magnitudes.
 fn wide(random: &mut Random, low: f32, high: f32) -> f32 {
@@ -214,7 +206,16 @@ fn robot_command(random: &mut Random) -> RobotCommand {
     let value = f64::from(random.between(-3.0, 3.0));
     let (arm, block) = random.of(&WITHIN_REACH);
     let above = random.of(&[0.45, 0.45, 2.0, 3.0]);
-    match random.below(14) {
+    match random.below(16) {
+        14 | 15 => RobotCommand::Mirror(vec![(
+            random.of(&[joint, RobotJoint::gripper(arm)]).into(),
+            MeasuredJoint {
+                position: value.abs(),
+                velocity: value,
+                torque: 10.0 * value,
+                grips: random.of(&[None, Some(true), Some(false)]),
+            },
+        )]),
         0 => RobotCommand::Show(random.below(3) != 0),
         1 => RobotCommand::Drive(vec![(joint.into(), Drive::Velocity(value))]),
         2 => RobotCommand::Drive(vec![(joint.into(), Drive::Position(value))]),
@@ -281,6 +282,7 @@ fn kind(command: &SimCommand) -> &'static str {
         SimCommand::Mechanism(MechanismCommand::Cut { .. }) => "Cut",
         SimCommand::Robot(RobotCommand::Show(_)) => "Show",
         SimCommand::Robot(RobotCommand::Drive(_)) => "Drive",
+        SimCommand::Robot(RobotCommand::Mirror(_)) => "Mirror",
         SimCommand::Robot(RobotCommand::ReachTo { .. }) => "ReachTo",
         SimCommand::Robot(RobotCommand::ShowFace(_)) => "ShowFace",
         SimCommand::Robot(RobotCommand::ShowMarkers(_)) => "ShowMarkers",
@@ -288,7 +290,7 @@ fn kind(command: &SimCommand) -> &'static str {
 }
 
 /// Number of kinds of commands.
-const KINDS: usize = 27;
+const KINDS: usize = 28;
 
 /// Records a random demonstration; returns the file in which its replay differs, and the difference.
 fn difference(name: &str, seed: u64, drawn: &mut BTreeMap<&'static str, usize>) -> Option<String> {

@@ -264,7 +264,7 @@ fn an_unreadable_recording_is_reported_in_one_line() {
     let damaged = recording("damaged_recording");
     fs::write(damaged.folder.join("1.txt"), "2,grasp,Foot,RedBlock\n").unwrap();
     for (folder, words) in [
-        (&folder, "session.jsonl: "),
+        (&folder, "there is no session.jsonl in it"),
         (
             &moon.folder,
             "settings.physics.gravity was 16.2, and is 98.1 here; `tabletop replay ",

@@ -82,7 +82,7 @@ fn watch(app: &mut App, forgotten: &mut BTreeSet<String>) {
 }
 
 /// Resources that undo leaves as they are.
-const NOT_ROLLED_BACK: [&str; 23] = [
+const NOT_ROLLED_BACK: [&str; 26] = [
     // Undo itself, and the recording that it is a part of.
     "tabletop_core::recording::History",
     "tabletop_core::recording::Recording",
@@ -108,6 +108,9 @@ const NOT_ROLLED_BACK: [&str; 23] = [
     // Empty when undo comes.
     "tabletop_physics::bodies::PendingBodies",
     // Found out anew in every tick.
+    "tabletop_physics::encounter::free_flights::FreeFlights",
+    "tabletop_physics::impact::onset::Onset",
+    "tabletop_physics::linkage::FreeLinkages",
     "tabletop_core::rest::Rest",
     "tabletop_physics::workarounds::outside::WrittenBack",
     "tabletop_physics::rest::LastStep",

@@ -17,7 +17,7 @@ right, Y away from the robot, Z up. Rotations are quaternions x, y, z, w. A tick
 import importlib
 
 from ._tabletop import Error, Policy, Snapshot, registered, version
-from .recording import Recording, explain, imitate, multiply
+from .recording import Recording, explain, imitate, multiply, teach, tell
 from .world import Limb, Objects, World
 
 __version__ = version()
@@ -39,6 +39,8 @@ __all__ = [
     "make_vec",
     "multiply",
     "registered",
+    "teach",
+    "tell",
 ]
 
 _OF_GYMNASIUM = {"TabletopEnv", "TabletopVectorEnv", "make", "make_env", "make_vec"}

@@ -21,7 +21,8 @@ FARTHEST = 1000.0
 
 
 def _options(
-    name: str | None = None,
+    name: str | None,
+    goals: bool,
     *,
     scenario: Path | None = None,
     setup: Path | None = None,
@@ -32,17 +33,39 @@ def _options(
     dynamic: bool = False,
     observation: str = "state",
     action: str = "joint_velocity",
-    reward: str = "dense",
+    reward: str | None = None,
     size: tuple[int, int] = (128, 128),
     camera: str = "head",
     smooth: bool = False,
     ticks_per_step: int = 3,
     max_steps: int = 400,
+    record: Path | None = None,
 ) -> dict[str, Any]:
     options = dict(locals())
     options["goal"] = [goal] if isinstance(goal, str) else list(goal)
     options["allow_paths"] = [os.fspath(path) for path in allow_paths]
+    del options["goals"]
+    options["reward"] = reward or ("distance" if goals else "dense")
+    if goals and options["reward"] != "distance":
+        raise _tabletop.Error(f"goals: expected reward distance, which compute_reward computes, found {reward}")
     return options
+
+
+def _fps(options: dict[str, Any]) -> int | float:
+    """The steps in a second, of which each has a picture; a whole number where it is one, as some tools of Gymnasium need."""
+    fps = 60 / options["ticks_per_step"]
+    return int(fps) if fps.is_integer() else fps
+
+
+def _check_reset_options(options: dict[str, Any] | None, *known: str) -> None:
+    for name in options or {}:
+        if name not in known:
+            raise _tabletop.Error(f"options of reset: expected {', '.join(known) or 'none'}, found {name}")
+
+
+def _check_render_mode(mode: str | None, known: Sequence[str]) -> None:
+    if mode not in (None, *known):
+        raise _tabletop.Error(f"render_mode: expected {' or '.join(known)}, found {mode}")
 
 
 class _Spaces:
@@ -114,21 +137,24 @@ class TabletopEnv(gymnasium.Env):
     observation: `state` (numbers, see `state_names`), `rgb` (a picture), `rgbd` (a picture, depth in units, the robot's numbers).
     goals: the state as a dictionary of observation, achieved_goal and desired_goal, for hindsight.
     action: `joint_velocity`, `joint_position`, `end_effector_delta` or `pick_place`; all numbers are from -1 to 1.
-    reward: `dense` (the units by which the world has come nearer to its goal, and 1 if it is there) or `sparse` (1 if it is there);
-        with `goals` the negative mean distance of the achieved from the desired places, which `compute_reward` computes.
+    reward: `dense` (the units by which the world has come nearer to its goal, and 1 if it is there), `sparse` (1 if it is there) or
+        `distance` (the negative mean distance of the achieved from the desired places); with `goals` the last, which
+        `compute_reward` computes.
     size, camera, smooth: of the pictures; `size` is columns x rows.
     ticks_per_step: 1/60 s each. max_steps: after which an episode is truncated.
+    record: a folder in which each episode becomes a recording, `000000` and so on; the next `reset` or `close` finishes it.
 
     An episode ends when the world is at its goal; `info["is_success"]` says so, and `info["failures"]` what is not yet as it should be.
+    `info["instruction"]` is what is to be done in this episode, where that is said: in `Instruction`.
     """
 
     metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 20}
 
     def __init__(self, name: str | None = None, *, goals: bool = False, render_mode: str | None = None, **options: Any):
-        options = _options(name, **options)
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise _tabletop.Error(f"render_mode: expected rgb_array or human, found {render_mode}")
+        options = _options(name, goals, **options)
+        _check_render_mode(render_mode, self.metadata["render_modes"])
         self._env = _tabletop.Environment(options)
+        self.metadata = {**self.metadata, "render_fps": _fps(options)}
         self._spaces = _Spaces(self._env, options, goals)
         self.observation_space = self._spaces.observation
         self.action_space = self._spaces.action
@@ -147,6 +173,7 @@ class TabletopEnv(gymnasium.Env):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begins an episode: with a seed that of this seed, the same bits everywhere; otherwise the next one."""
+        _check_reset_options(options)
         super().reset(seed=seed)
         if seed is None and not self._is_reset:
             seed = int(self.np_random.integers(2**63))
@@ -161,8 +188,6 @@ class TabletopEnv(gymnasium.Env):
         action = np.ascontiguousarray(action, dtype=np.float32)
         reward, success, truncated = self._env.step(action)
         observation = self._observe()
-        if self._spaces.goals:
-            reward = float(goal_reward(observation["achieved_goal"], observation["desired_goal"], {}))
         if self.render_mode == "human":
             self._show()
         return observation, reward, success, truncated, self._info(success)
@@ -182,7 +207,8 @@ class TabletopEnv(gymnasium.Env):
         return self._env.picture()[0] if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Closes the window of render mode `human`."""
+        """Finishes the recording of the episode, and closes the window of render mode `human`."""
+        self._env.finish_recording()
         if self._window is not None:
             import pygame
 
@@ -195,7 +221,9 @@ class TabletopEnv(gymnasium.Env):
 
     def _info(self, success: bool) -> dict[str, Any]:
         failures = [failure for failure, _, _ in self._env.verdicts() if failure]
-        return {"is_success": success, "failures": failures}
+        info = {"is_success": success, "failures": failures}
+        instruction = self._env.instruction
+        return info if instruction is None else info | {"instruction": instruction}
 
     def _show(self) -> None:
         try:
@@ -230,7 +258,7 @@ class TabletopVectorEnv(VectorEnv):
     `send` and `recv` step some of them while others are waited for, as in EnvPool.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 20, "autoreset_mode": AutoresetMode.NEXT_STEP}
 
     def __init__(
         self,
@@ -244,7 +272,8 @@ class TabletopVectorEnv(VectorEnv):
         render_mode: str | None = None,
         **options: Any,
     ):
-        options = _options(name, **options)
+        options = _options(name, goals, **options)
+        _check_render_mode(render_mode, self.metadata["render_modes"])
         mode = AutoresetMode(autoreset_mode) if not isinstance(autoreset_mode, str) else _mode(autoreset_mode)
         single = _tabletop.Environment(options)
         self._spaces = _Spaces(single, options, goals)
@@ -252,14 +281,14 @@ class TabletopVectorEnv(VectorEnv):
         self._vector = _tabletop.Vector(options, num_envs, threads, mode.name.lower())
         self.num_envs = num_envs
         self.render_mode = render_mode
-        self.metadata = {**self.metadata, "autoreset_mode": mode}
+        self.metadata = {**self.metadata, "render_fps": _fps(options), "autoreset_mode": mode}
         self.single_observation_space = self._spaces.observation
         self.single_action_space = self._spaces.action
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.state_names = single.state_names
         self._copy = copy
-        self._is_reset = False
+        self._was_reset = np.zeros(num_envs, np.bool_)
         rows, columns = self._spaces.shape
         numbers = len(self.state_names)
         arrays: dict[str, np.ndarray] = {"state": np.zeros((num_envs, numbers), np.float32)}
@@ -277,45 +306,77 @@ class TabletopVectorEnv(VectorEnv):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode in each; a number seeds them with it and the numbers that follow."""
-        super().reset(seed=seed if isinstance(seed, int) else None)
-        if seed is None and not self._is_reset:
-            seed = int(self.np_random.integers(2**62))
-        if seed is None:
-            seeds = [None] * self.num_envs
-        elif isinstance(seed, (int, np.integer)):
+        """Begins an episode in each, or in those that `options["reset_mask"]` names with a boolean each; the others stay as they are.
+
+        A number seeds them with it and the numbers that follow.
+        """
+        mask = self._reset_mask(options)
+        if isinstance(seed, (int, np.integer)):
+            super().reset(seed=int(seed))
             seeds = [int(seed) + number for number in range(self.num_envs)]
         else:
-            seeds = list(seed)
-            if len(seeds) != self.num_envs:
-                raise _tabletop.Error(f"expected {self.num_envs} seeds, found {len(seeds)}")
-        self._is_reset = True
-        self._vector.reset(seeds)
-        arrays = self._take()
-        return self._observation(arrays), {}
+            seeds = [None] * self.num_envs if seed is None else list(seed)
+        if len(seeds) != self.num_envs:
+            raise _tabletop.Error(f"expected {self.num_envs} seeds, found {len(seeds)}")
+        numbers = np.flatnonzero(mask).tolist()
+        if any(seeds[number] is None and not self._was_reset[number] for number in numbers):
+            first = int(self.np_random.integers(2**62))
+            seeds = [
+                first + number if seed is None and not self._was_reset[number] else seed
+                for number, seed in enumerate(seeds)
+            ]
+        self._vector.reset([(number, seeds[number]) for number in numbers])
+        self._was_reset |= mask
+        observation = self._observation(self._take())
+        success = np.zeros(self.num_envs, np.bool_)
+        return observation, _infos(mask, success, self._vector.failures()[0], self._vector.instructions()[0])
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Acts for a step in each: `actions` has a row for each."""
-        self._vector.step(np.ascontiguousarray(actions, dtype=np.float32))
-        return self._results(self._take(), None)
+        self._vector.step(self._checked(actions, self.num_envs))
+        return self._results(self._take(), np.arange(self.num_envs))
 
     def send(self, actions: np.ndarray, env_id: np.ndarray | None = None) -> None:
         """Lets these environments be stepped with a row each, and returns at once."""
         env_id = np.arange(self.num_envs) if env_id is None else np.asarray(env_id)
-        self._vector.send(env_id.astype(np.int64), np.ascontiguousarray(actions, dtype=np.float32))
+        self._vector.send(env_id.astype(np.int64), self._checked(actions, len(env_id)))
 
     def recv(self, count: int | None = None) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Waits for so many environments, those that are ready first; their numbers are `info["env_id"]`. Without a count, for all."""
         env_id = self._vector.receive(self.num_envs if count is None else count)
-        return self._results(self._take(), env_id)
+        results = self._results(self._take(), env_id)
+        observation, reward, success, truncation, info = (_rows(result, env_id) for result in results)
+        return observation, reward, success, truncation, {"env_id": env_id, **info}
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Ends the threads."""
+        """Finishes the recordings of the episodes, and ends the threads."""
+        if self._vector is not None:
+            self._vector.finish_recordings()
         self._vector = None
 
     def render(self) -> tuple[np.ndarray, ...] | None:
-        """The pictures of all; only if they are observed."""
-        return tuple(self._arrays["rgb"]) if self.render_mode == "rgb_array" and "rgb" in self._arrays else None
+        """The pictures of all."""
+        return tuple(self._vector.pictures()) if self.render_mode == "rgb_array" else None
+
+    def _reset_mask(self, options: dict[str, Any] | None) -> np.ndarray:
+        _check_reset_options(options, "reset_mask")
+        if not options:
+            return np.ones(self.num_envs, np.bool_)
+        mask = np.asarray(options["reset_mask"])
+        if mask.dtype != np.bool_ or mask.shape != (self.num_envs,):
+            raise _tabletop.Error(
+                f"reset_mask: expected {self.num_envs} booleans, found numbers of type {mask.dtype} in the shape {mask.shape}"
+            )
+        if not mask.any():
+            raise _tabletop.Error("reset_mask: expected at least one environment to be reset, found none")
+        return mask
+
+    def _checked(self, actions: np.ndarray, rows: int) -> np.ndarray:
+        actions = np.ascontiguousarray(actions, dtype=np.float32)
+        expected = (rows, *self.single_action_space.shape)
+        if actions.shape != expected:
+            raise _tabletop.Error(f"expected actions of the shape {expected}, found {actions.shape}")
+        return actions
 
     def _take(self) -> dict[str, np.ndarray]:
         if self._copy:
@@ -327,31 +388,20 @@ class TabletopVectorEnv(VectorEnv):
         parts = (arrays.get(prefix + name) for name in ("state", "rgb", "depth"))
         return self._spaces.of(*parts)
 
-    def _results(self, arrays: dict[str, np.ndarray], env_id: np.ndarray | None) -> tuple[Any, ...]:
-        observation = self._observation(arrays)
-        reward, success, truncation = arrays["reward"], arrays["success"], arrays["truncation"]
-        info: dict[str, Any] = {}
-        if self._is_same_step and (success.any() or truncation.any()):
-            over = success | truncation
+    def _results(self, arrays: dict[str, np.ndarray], env_id: np.ndarray) -> tuple[Any, ...]:
+        success, truncation = arrays["success"], arrays["truncation"]
+        failures, last_failures = self._vector.failures()
+        instructions, last_instructions = self._vector.instructions()
+        stepped = np.zeros(self.num_envs, np.bool_)
+        stepped[env_id] = True
+        info = _infos(stepped, success & (not self._is_same_step), failures, instructions)
+        over = stepped & (success | truncation)
+        if self._is_same_step and over.any():
             last = self._observation(arrays, "last_")
-            info["final_obs"] = np.array(
-                [_row(last, number) if over[number] else None for number in range(self.num_envs)] + [None], dtype=object
-            )[:-1]
-            info["_final_obs"] = over
-            info["final_info"] = {"is_success": success.copy(), "_is_success": over.copy()}
-            info["_final_info"] = over.copy()
-        else:
-            info["is_success"] = success.copy()
-            info["_is_success"] = np.ones(self.num_envs, np.bool_)
-        if self._spaces.goals:
-            goals = self._observation(arrays, "last_") if self._is_same_step else observation
-            reached = goal_reward(goals["achieved_goal"], goals["desired_goal"], {})
-            present = goal_reward(observation["achieved_goal"], observation["desired_goal"], {})
-            reward = np.where(success | truncation, reached, present).astype(np.float32)
-        if env_id is None:
-            return observation, reward, success, truncation, info
-        info = {"env_id": env_id, "is_success": success[env_id]}
-        return _rows(observation, env_id), reward[env_id], success[env_id], truncation[env_id], info
+            info["final_obs"] = _objects({number: _rows(last, number) for number in np.flatnonzero(over)}, self.num_envs)
+            info["final_info"] = _infos(over, success, last_failures, last_instructions)
+            info["_final_obs"], info["_final_info"] = over, over.copy()
+        return self._observation(arrays), arrays["reward"].astype(np.float64), success, truncation, info
 
     def __repr__(self) -> str:
         return f"<tabletop.TabletopVectorEnv of {self.num_envs}: {self._spaces.kind}>"
@@ -364,16 +414,32 @@ def _mode(name: str) -> AutoresetMode:
         return AutoresetMode(name)
 
 
-def _row(observation: Any, number: int) -> Any:
-    if isinstance(observation, dict):
-        return {name: array[number] for name, array in observation.items()}
-    return observation[number]
+def _infos(
+    mask: np.ndarray, success: np.ndarray, failures: list[list[str]], instructions: list[str]
+) -> dict[str, np.ndarray]:
+    """The infos of single environments as Gymnasium puts them together: each with a mask of those that have it."""
+
+    def listed(of: list[Any]) -> np.ndarray:
+        return _objects({number: of[number] for number in np.flatnonzero(mask)}, len(mask))
+
+    infos = {"is_success": success & mask, "_is_success": mask.copy()}
+    infos |= {"failures": listed(failures), "_failures": mask.copy()}
+    if any(instructions):
+        infos |= {"instruction": listed(instructions), "_instruction": mask.copy()}
+    return infos
 
 
-def _rows(observation: Any, numbers: np.ndarray) -> Any:
-    if isinstance(observation, dict):
-        return {name: array[numbers] for name, array in observation.items()}
-    return observation[numbers]
+def _objects(of: dict[int, Any], count: int) -> np.ndarray:
+    objects = np.full(count, None, object)
+    for number, it in of.items():
+        objects[number] = it
+    return objects
+
+
+def _rows(arrays: Any, numbers: np.ndarray | int) -> Any:
+    if isinstance(arrays, dict):
+        return {name: _rows(array, numbers) for name, array in arrays.items()}
+    return arrays[numbers]
 
 
 def make(name: str, **options: Any) -> TabletopEnv:

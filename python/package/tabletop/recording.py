@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import io
+import itertools
 import json
 import os
 import re
@@ -21,15 +23,18 @@ from . import _tabletop
 Progress = Callable[[int, int], None]
 """Is told how many are done, and how many are to be done."""
 
+_TEXTS = ("id", "joint")
+"""The columns of a recording's tables that hold no numbers."""
+
 
 @dataclass(frozen=True)
 class Frame:
     """A picture of a recording."""
 
     segment: int
-    """The segment, from 1."""
+    """The segment, from 0."""
     number: int
-    """Its number in the segment."""
+    """Its number in the recording, from 0; those that show nothing new are left out."""
     tick: int
     """The tick at whose end it was taken."""
     path: Path
@@ -52,35 +57,31 @@ class Recording:
             text = (self.folder / "session.jsonl").read_text(encoding="utf-8")
         except OSError as error:
             raise _tabletop.Error(f"{self.folder}: no recording: {error}") from None
-        lines = [json.loads(line) for line in text.splitlines() if line.endswith("}")]
-        if not lines or "format" not in lines[0]:
+        try:
+            header = json.loads(text.split("\n", 1)[0])
+        except ValueError:
+            header = None
+        if not isinstance(header, dict) or "format" not in header:
             raise _tabletop.Error(f"{self.folder}: no recording: its session log has no header")
-        self.header: dict[str, Any] = lines[0]
+        self.header: dict[str, Any] = header
         """The first line of the session log: format, settings, scene."""
 
     def frames(self) -> Iterator[Frame]:
-        """The pictures, in order."""
-        start, per_frame = self.header["start_tick"], self.header["ticks_per_frame"]
-        count = 0
-        for segment in range(1, 1 << 31):
-            if not (self.folder / f"{segment}.txt").is_file():
-                return
-            pictures = self.folder / str(segment)
-            numbers = sorted(int(it.stem) for it in pictures.glob("*.png") if it.stem.isdigit())
-            for number in numbers:
-                yield Frame(segment, number, start + count * per_frame, pictures / f"{number}.png")
-                count += 1
+        """The pictures, in order.
+
+        Raises `Error` if a file was changed or is damaged.
+        """
+        for segment, number, tick, path in _tabletop.recorded_frames(self.folder):
+            yield Frame(segment, number, tick, Path(path))
 
     def events(self) -> list[tuple[int, list[str]]]:
-        """The lines of the event logs, each as its segment and its fields."""
+        """The lines of the event logs, each as its segment, from 0, and its values: frame, event, and what belongs to it."""
         events = []
-        for segment in range(1, 1 << 31):
-            try:
-                text = (self.folder / f"{segment}.txt").read_text(encoding="utf-8")
-            except OSError:
+        for segment in itertools.count():
+            path = self.folder / f"{segment}.txt"
+            if not path.is_file():
                 return events
-            events += [(segment, line.split()) for line in text.splitlines() if line.strip()]
-        return events
+            events += [(segment, values) for values in _rows(path)]
 
     def states(self) -> dict[str, np.ndarray | list[str]]:
         """The poses and velocities of objects: the columns of states.csv as arrays, with a row for each object and tick of a change."""
@@ -105,6 +106,14 @@ def explain(recording: str | os.PathLike[str]) -> dict[str, Any]:
     Raises `Error` if the recording cannot be read.
     """
     return json.loads(_run("explain", recording, "--json"))
+
+
+def teach(*recordings: str | os.PathLike[str]) -> dict[str, Any]:
+    """The program that demonstrations mean: its `sentences` and its `program`, the `alternatives`, and what was `untouched`.
+
+    Raises `Error` if a recording cannot be read, or no program explains them all.
+    """
+    return json.loads(_run("teach", *recordings, "--json"))
 
 
 @dataclass(frozen=True)
@@ -141,7 +150,34 @@ def imitate(
         options += ["--trials", trials]
     if dynamic:
         options.append("--dynamic")
-    report = _run("imitate", *options, codes=(0, 1))
+    return _tallied(_run("imitate", *options, codes=(0, 1)))
+
+
+def tell(
+    sentences: str,
+    *,
+    setup: str | os.PathLike[str] | None = None,
+    imitate: bool = False,
+    seed: int | None = None,
+    trials: int = 1,
+    record: str | os.PathLike[str] | None = None,
+) -> Imitations:
+    """Does what sentences say, by the hand or, with `imitate`, by the robot; with several trials, with everything at random places.
+
+    Raises `Error` if the sentences are not understood.
+    """
+    options: list[Any] = [sentences]
+    for name, value in ("--setup", setup), ("--seed", seed), ("--record", record):
+        if value is not None:
+            options += [name, value]
+    if trials != 1:
+        options += ["--trials", trials]
+    if imitate:
+        options.append("--imitate")
+    return _tallied(_run("tell", *options, codes=(0, 1)))
+
+
+def _tallied(report: str) -> Imitations:
     tally = re.search(r"^done +(\d+) of (\d+)", report, re.MULTILINE)
     if tally:
         return Imitations(int(tally[1]), int(tally[2]), report)
@@ -200,16 +236,22 @@ def _run(command: str, *arguments: Any, codes=(0,), while_waiting: Callable[[], 
 
 
 def _columns(path: Path) -> dict[str, np.ndarray | list[str]]:
+    names, *rows = _rows(path) or [[]]
+    columns: dict[str, np.ndarray | list[str]] = {}
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            names, *rows = csv.reader(file)
-    except (OSError, ValueError) as error:
-        raise _tabletop.Error(f"{path}: it cannot be read: {error}") from None
-    columns = {}
-    for name, column in zip(names, zip(*rows) if rows else [()] * len(names)):
-        try:
-            columns[name] = np.array([float(it) for it in column])
-        except ValueError:
-            columns[name] = list(column)
+        for number, name in enumerate(names):
+            column = [row[number] for row in rows]
+            columns[name] = column if name in _TEXTS else np.array([float(it) for it in column])
+    except (IndexError, ValueError) as error:
+        raise _tabletop.Error(f"{path}: column {name}: {error}; the file was changed, or is damaged") from None
     return columns
+
+
+def _rows(path: Path) -> list[list[str]]:
+    """The values of the lines of a file; a last line without line end does not count."""
+    try:
+        text = path.read_bytes().decode()
+        return list(csv.reader(io.StringIO(text[: text.rfind("\n") + 1], newline=""), strict=True))
+    except (OSError, ValueError, csv.Error) as error:
+        raise _tabletop.Error(f"{path}: it cannot be read: {error}") from None
 

@@ -4,11 +4,15 @@ import sys
 from importlib.metadata import version
 
 import numpy as np
+import torch
 from lerobot.datasets.lerobot_dataset import LeRobotDataset
 from PIL import Image
 
 root, recordings = sys.argv[1], sys.argv[2:]
 dataset = LeRobotDataset("local/check", root=root, video_backend="pyav")
+collate = None
+if any(name.startswith("language") for name in dataset.meta.features):
+    from lerobot.utils.collate import lerobot_collate_fn as collate
 assert dataset.num_episodes == len(recordings), dataset.num_episodes
 assert len(dataset) > 0
 tasks, compared = set(), 0
@@ -23,5 +27,7 @@ for index in range(len(dataset)):
     recorded = Image.open(f"{recordings[int(item['episode_index'])]}/0/0.png").convert("RGB")
     assert (shown == np.asarray(recorded)).all(), "a picture differs"
     compared += 1
+batches = torch.utils.data.DataLoader(dataset, batch_size=8, collate_fn=collate)
+assert sum(len(batch["index"]) for batch in batches) == len(dataset)
 assert all(task.endswith(".") for task in tasks), tasks
 print(f"LeRobot {version('lerobot')}: {dataset.num_episodes} episodes, {len(dataset)} frames, {compared} pictures compared, tasks {sorted(tasks)}")

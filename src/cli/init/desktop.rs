@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::storage::{Storage, parent_of};
+use crate::storage::{InnerPath, Storage, parent_of};
 
 use super::{Failure, Output};
 
@@ -31,13 +31,13 @@ pub(super) fn install(folder: Option<&Path>) -> Result<(), Failure> {
         ("icons/hicolor/scalable/apps/tabletop.svg", ICON),
         ("applications/tabletop.desktop", &*entry),
     ] {
-        let path = data.join(place);
+        let path = InnerPath::fixed(place).below(&data);
         let storage = Storage::default();
         storage
             .create_folders(parent_of(&path))
             .and_then(|()| storage.replace(&path, text.as_bytes()))
             .map_err(|error| Failure::at(&path, error))?;
-        Output::Stdout.write(format!("{} written\n", path.display()).as_bytes())?;
+        Output::tell(&format!("{} written\n", path.display()))?;
     }
     Ok(())
 }

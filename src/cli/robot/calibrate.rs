@@ -7,6 +7,7 @@ use crate::{
     core::{HeadCamera, Table},
     recorder::read_picture,
     shipped::read_faultless_task,
+    storage::InnerFile,
     vision::calibrated,
 };
 use clap::Args;
@@ -35,7 +36,9 @@ pub(super) fn calibrate(args: &CalibrateArgs) -> Result<ExitCode, Failure> {
         }
         None => Table::default(),
     };
-    let picture = read_picture(&args.picture).map_err(Failure::input)?;
+    let picture = InnerFile::at(&args.picture)
+        .map_err(|error| Failure::input(format!("{}: {error}", args.picture.display())))?;
+    let picture = read_picture(&picture).map_err(Failure::input)?;
     let head = taking(&HeadCamera::default(), &picture);
     let thought = Camera::of_head(&head, &table);
     let found = calibrated(&picture, &thought, &table);

@@ -8,13 +8,22 @@ use std::{
 };
 
 use crate::{
-    cli::{Failure, Output, WRONG_INPUT, terminal::say},
-    robot::{Description, DescriptionSource, Survey, draft},
-    robots::read_robot,
+    cli::{Failure, Output, WRONG_INPUT, robot_options::describe, terminal::say},
+    core::Table,
+    kinematics::ModelError,
+    robot::{Description, DescriptionSource, RobotPlugin, Survey, draft},
+    robot_body,
     shipped::{read_text, true_path},
     storage::{Storage, parent_of},
 };
 use clap::Args;
+
+#[derive(Args)]
+pub(super) struct SurveyArgs {
+    /// The description, as after --robot
+    #[arg(value_name = "FILE", conflicts_with = "robot")]
+    pub file: Option<PathBuf>,
+}
 
 #[derive(Args)]
 pub(super) struct DraftArgs {
@@ -33,24 +42,34 @@ pub(super) fn check(file: Option<&Path>) -> Result<ExitCode, Failure> {
         return print(&survey, "robot.ron", "baxter.urdf").map(|()| ExitCode::SUCCESS);
     };
     let name = file.display().to_string();
-    let refusal = match read_robot(file) {
+    let refusal = match describe(file) {
         Ok(robot) => {
             let source = robot.source.as_ref();
             let urdf = source.map_or_else(|| name.clone(), |it| it.path.display().to_string());
             print(&survey(&robot)?, &name, &urdf)?;
-            Output::Stdout.write(b"it can be driven\n")?;
+            require_body(robot).map_err(|error| Failure::input(format!("{name}: {error}")))?;
+            Output::tell("it can be driven\n")?;
             return Ok(ExitCode::SUCCESS);
         }
         Err(refusal) => refusal,
     };
     let Some(robot) = first_robot(file) else {
-        return Err(Failure::input(refusal));
+        return Err(refusal);
     };
     print(&survey(&robot)?, "robot.ron", &name)?;
     say(format_args!(
         "{name}: it has no robot.ron and other joints than Baxter, so it cannot be driven yet: `tabletop robot new {name}` writes a first one, as shown above"
     ));
     Ok(ExitCode::from(WRONG_INPUT))
+}
+
+/// Makes sure that a robot has the body with which it imitates.
+fn require_body(robot: Description) -> Result<(), ModelError> {
+    let plugin = RobotPlugin {
+        description: Some(robot),
+        ..RobotPlugin::default()
+    };
+    robot_body(&plugin, &Table::default()).map(drop)
 }
 
 /// The robot of a bare URDF with the `robot.ron` that would be written first; `None` if it is none, or none can be written.
@@ -86,7 +105,7 @@ fn print(survey: &Survey, layout: &str, urdf: &str) -> Result<(), Failure> {
         };
         text += &format!("{file}: line {}: {}\n", shortcoming.line, shortcoming.text);
     }
-    Output::Stdout.write(text.as_bytes())
+    Output::tell(&text)
 }
 
 /// Writes a first `robot.ron`.
@@ -112,7 +131,7 @@ pub(super) fn write_first(args: &DraftArgs) -> Result<ExitCode, Failure> {
         "{}: written; its comments ask what the URDF does not say\n",
         out.display()
     );
-    Output::Stdout.write(line.as_bytes())?;
+    Output::tell(&line)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,0 +1,112 @@
+//! The beginnings of the tasks by which policies are judged, for each robot inside the program.
+
+use std::{collections::BTreeSet, path::Path};
+
+use bevy::math::Vec3;
+use tabletop_benchmark::{BENCHMARK_VERSION, JUDGED_TASKS, TaskBeginning};
+use tabletop_controller::{LimbSight, SeenObject, Sight};
+use tabletop_core::{CameraCarrier, ObjectSpec, RobotLayout};
+use tabletop_episodes::{multiplication::Fingerprint, robot_body};
+use tabletop_program::{ProgramRun, TableScene};
+use tabletop_robot::RobotPlugin;
+use tabletop_scene::{IdAllocator, assemble};
+use tabletop_sim::robots::read_robot;
+use tabletop_task::Relation;
+
+/// Number of episodes of each task that are looked at.
+const EPISODES: u64 = 5;
+
+/// What an observer sees of objects.
+fn sight(objects: &[ObjectSpec]) -> Sight {
+    let seen = objects.iter().map(|object| {
+        let (shape, pose) = (object.shape.clone(), object.pose);
+        let is_fixed = object.is_fixed();
+        (
+            object.id.clone(),
+            SeenObject {
+                shape,
+                pose,
+                is_fixed,
+            },
+        )
+    });
+    Sight {
+        objects: seen.collect(),
+        limbs: vec![LimbSight::default()],
+        ..Sight::default()
+    }
+}
+
+fn table(beginning: &TaskBeginning) -> TableScene {
+    let assembly = assemble(&beginning.scene, &mut IdAllocator::default());
+    TableScene {
+        table: beginning.scene.table,
+        objects: assembly.objects,
+        joints: assembly.joints,
+    }
+}
+
+/// Whoever changes these fingerprints changes what results mean: then the benchmark has another version.
+#[test]
+fn beginnings_are_those_of_this_version() {
+    assert_eq!(BENCHMARK_VERSION, "benchmark@1");
+    let robots = [None, Some("panda")];
+    let found = robots.map(|name| {
+        let file = name.map(|name| format!("shipped:assets/{name}/robot.ron"));
+        let description = file.map(|file| read_robot(Path::new(&file)).unwrap());
+        let carrier = match &description {
+            Some(description) => CameraCarrier::from(&description.layout),
+            None => CameraCarrier::from(RobotLayout::baxter()),
+        };
+        let robot = RobotPlugin {
+            description,
+            ..RobotPlugin::default()
+        };
+        let mut all = Fingerprint::EMPTY;
+        let mut different = BTreeSet::new();
+        for task in &JUDGED_TASKS {
+            for episode in 0..EPISODES {
+                let body = robot_body(&robot, &tabletop_core::Table::default()).unwrap();
+                let beginning = task.begin(episode, &body, carrier);
+                let beginning = beginning.unwrap_or_else(|error| panic!("{name:?}: {error}"));
+                all = all.and(beginning.fingerprint.as_bytes());
+                different.insert(beginning.fingerprint.clone());
+                // It is not done at first, and done when the program has done it.
+                let before = table(&beginning);
+                let now = sight(&before.objects);
+                assert!(!beginning.is_done(&now), "{}", task.name);
+                assert_eq!(beginning.left(&now).len(), beginning.steps, "{}", task.name);
+                let program = task.program().unwrap();
+                let (steps, mut after, _) = ProgramRun::rehearsed(&program, &before);
+                for (number, step) in steps.iter().enumerate() {
+                    if let Relation::Inside { object } = &step.relation {
+                        // Rehearsals do not know where a turned box has its corners.
+                        let middle = after.object(object).unwrap().pose.location;
+                        let mut objects = after.objects.iter_mut();
+                        let inside = objects.find(|object| object.id == step.object).unwrap();
+                        inside.pose.location = middle + Vec3::new(0.5 * number as f32, 0.0, 0.06);
+                    }
+                }
+                let mut then = sight(&after.objects);
+                assert!(
+                    beginning.is_done(&then),
+                    "{}, {:?}",
+                    task.name,
+                    beginning.left(&then)
+                );
+                then.limbs[0].holds.push("Red".into());
+                assert!(!beginning.is_done(&then), "{}", task.name);
+                then.objects.remove("Red");
+                assert_eq!(
+                    beginning.left(&then).len(),
+                    usize::from(before.object("Red").is_some())
+                );
+                assert!(task.seconds >= 30 * steps.len() as u64, "{}", task.name);
+            }
+        }
+        assert_eq!(different.len(), JUDGED_TASKS.len() * EPISODES as usize);
+        all.to_string()
+    });
+    let expected = ["36561241c3c7845b", "942e8d878bd095ca"];
+    assert_eq!(found, expected);
+}

@@ -1,0 +1,199 @@
+//! The options of a policy that acts for the robot: one of a file, or one that somebody serves.
+
+use std::path::{Path, PathBuf};
+
+use crate::{
+    core::{HeadCamera, ObjectSpec, RobotLayout, TICKS_PER_SECOND},
+    imitation::AppStage,
+    planner::{Before, Imitation, PlanningStage as _},
+    policy::{PicturePolicy, Policy, RemoteError, RemotePolicy, follow_actions, left_undone},
+    robot::RobotPlugin,
+    task::{Binding, Task},
+    wire::{MappedActions, PolicyAddress, PolicyMapping, RecordedExchanges},
+};
+use bevy::prelude::*;
+use clap::Args;
+
+use super::{Failure, result_file::require_outside};
+
+#[derive(Args)]
+pub(super) struct PolicyOptions {
+    /// Let this policy act: one that `tabletop learn` has made of the recording, an ONNX file of somebody else's (docs/learning.md), one that is served at
+    /// ws://HOST:PORT by openpi's protocol, or the recorded exchanges of one (docs/policies.md)
+    #[arg(long, value_name = "FILE")]
+    policy: Option<PathBuf>,
+    /// What the served policy sees and does: tabletop, oracle, droid, libero, so101, or a file of your own [default: tabletop or oracle, if the server wants that]
+    #[arg(long, value_name = "FILE", requires = "policy")]
+    mapping: Option<PathBuf>,
+    /// Write what the served policy is asked and answers into this new file; --policy FILE then does the same without the server
+    #[arg(long, value_name = "FILE", requires = "policy")]
+    exchanges: Option<PathBuf>,
+}
+
+/// A policy that acts for the robot.
+pub(super) enum ActingPolicy {
+    /// It decides by pictures which object is to be put where.
+    Places(Box<dyn PicturePolicy>),
+    /// So does this one, which somebody serves.
+    ServedPlaces(Box<RemotePolicy>),
+    /// It moves the robot's joints.
+    Motions(Box<RemotePolicy>),
+}
+
+impl ActingPolicy {
+    /// The policy that decides by pictures of the head camera.
+    pub fn picture_policy(&self) -> Option<&dyn PicturePolicy> {
+        match self {
+            Self::Places(policy) => Some(&**policy),
+            Self::ServedPlaces(policy) => Some(&**policy),
+            Self::Motions(_) => None,
+        }
+    }
+
+    /// The policy that somebody serves.
+    pub const fn served(&self) -> Option<&RemotePolicy> {
+        match self {
+            Self::Places(_) => None,
+            Self::ServedPlaces(policy) | Self::Motions(policy) => Some(policy),
+        }
+    }
+
+    /// Gives the head camera's pictures the size that it needs.
+    pub fn resize(&self, head: &mut HeadCamera) {
+        let size = self.picture_policy().and_then(PicturePolicy::picture_size);
+        if let Some([width, height]) = size {
+            (head.width, head.height) = (width, height);
+        }
+    }
+}
+
+impl PolicyOptions {
+    /// The policy's file or address.
+    pub fn name(&self) -> Option<&Path> {
+        self.policy.as_deref()
+    }
+
+    /// The mapping's name or file, if one is named.
+    pub fn mapping(&self) -> Option<&Path> {
+        self.mapping.as_deref()
+    }
+
+    /// The policy that is to act for this robot, if one is.
+    pub fn read(&self, robot: &RobotPlugin) -> Result<Option<ActingPolicy>, Failure> {
+        let Some(policy) = &self.policy else {
+            return Ok(None);
+        };
+        let address = policy.to_str().filter(|text| text.contains("://"));
+        if let Some(address) = address {
+            let address: PolicyAddress = address.parse().map_err(Failure::input)?;
+            let connected = RemotePolicy::connect(address, self.read_mapping()?);
+            return self.fitted(connected, robot).map(Some);
+        }
+        let is_recorded = RecordedExchanges::are_in(policy);
+        let for_servers = [
+            ("mapping", self.mapping.is_some() && !is_recorded),
+            ("exchanges", self.exchanges.is_some()),
+        ];
+        if let Some((option, _)) = for_servers.into_iter().find(|(_, is_given)| *is_given) {
+            return Err(Failure::input(format!(
+                "--{option} is for a policy that is served, as in --policy ws://HOST:8000"
+            )));
+        }
+        if is_recorded {
+            let recorded = RemotePolicy::recorded(policy, self.read_mapping()?);
+            return self.fitted(recorded, robot).map(Some);
+        }
+        read_file(policy).map(|policy| Some(ActingPolicy::Places(policy)))
+    }
+
+    fn read_mapping(&self) -> Result<Option<PolicyMapping>, Failure> {
+        let mapping = self.mapping.as_deref().map(PolicyMapping::named);
+        mapping.transpose().map_err(Failure::input)
+    }
+
+    /// A policy that may act for this robot.
+    fn fitted(
+        &self,
+        policy: Result<RemotePolicy, RemoteError>,
+        robot: &RobotPlugin,
+    ) -> Result<ActingPolicy, Failure> {
+        let layout = match &robot.description {
+            Some(description) => &description.layout,
+            None => RobotLayout::baxter(),
+        };
+        let failure = |error| match error {
+            RemoteError::Wire(error) => Failure::run(error),
+            RemoteError::Mapping(error) => Failure::input(error),
+            RemoteError::Unmapped(_) => Failure::input(error),
+        };
+        let mut policy = policy.map_err(failure)?;
+        policy.check_for(layout).map_err(Failure::input)?;
+        if let Some(file) = &self.exchanges {
+            require_outside(file, &[])?;
+            policy.note_in(file).map_err(failure)?;
+        }
+        Ok(match policy.mapping().actions {
+            MappedActions::Places => ActingPolicy::ServedPlaces(Box::new(policy)),
+            MappedActions::Columns { .. } => ActingPolicy::Motions(Box::new(policy)),
+        })
+    }
+}
+
+/// The policy of a file.
+pub(super) fn read_file(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
+    if file.extension().is_some_and(|kind| kind == "onnx") {
+        return read_onnx(file);
+    }
+    Ok(Box::new(Policy::read(file).map_err(Failure::input)?))
+}
+
+#[cfg(feature = "onnx")]
+fn read_onnx(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
+    let policy = crate::policy::OnnxPolicy::read(file).map_err(Failure::input)?;
+    Ok(Box::new(policy))
+}
+
+#[cfg(not(feature = "onnx"))]
+fn read_onnx(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
+    Err(Failure::input(format!(
+        "{}: this program was built without ONNX; build it with cargo build --release --features onnx",
+        file.display()
+    )))
+}
+
+/// Simulated time, in s, that a policy which moves joints has for each step of a task.
+const SECONDS_PER_STEP: u64 = 30;
+
+/// A task in words.
+pub(super) fn words_of(task: &Task) -> String {
+    let sentences: Vec<_> = task.steps.iter().map(|step| &*step.sentence).collect();
+    sentences.join(" ")
+}
+
+/// Lets the robot do a task as a policy moves its joints.
+pub(super) fn follow_motions(
+    policy: &RemotePolicy,
+    app: &mut App,
+    task: &Task,
+    binding: &Binding,
+    objects: &[ObjectSpec],
+) -> Imitation {
+    let before = Before::anything(AppStage::new(app).sight());
+    let most = task.steps.len() as u64 * SECONDS_PER_STEP * u64::from(TICKS_PER_SECOND);
+    let prompt = words_of(task);
+    let followed = follow_actions(policy, app.world_mut(), &prompt, most, |now| {
+        left_undone(task, binding, objects, &before, now).is_none()
+    });
+    let failure = match followed {
+        Ok(()) => left_undone(task, binding, objects, &before, AppStage::new(app).sight()),
+        Err(failure) => Some((1, failure)),
+    };
+    Imitation {
+        steps_done: match failure {
+            Some((step, _)) => step.saturating_sub(1),
+            None => task.steps.len(),
+        },
+        corrections: 0,
+        failure,
+    }
+}
