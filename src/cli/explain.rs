@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    program::{Example, Meaning},
+    program::{Example, Meaning, Untouched},
     scene::{IdAllocator, assemble},
     shipped::read_faultless_task,
     task::{Demonstration, DetourKind, Furniture, Requirements, Role, Task, TaskStep},
@@ -16,10 +16,7 @@ use serde_json::{Value, json};
 use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
 
 use super::{
-    Failure, Output,
-    allowed_paths::AllowedPaths,
-    demonstration::read_demonstration,
-    meaning::{not_moved, told},
+    Failure, Output, allowed_paths::AllowedPaths, demonstration::read_demonstration, meaning::told,
     terminal::show_warnings,
 };
 
@@ -115,7 +112,8 @@ fn steps(shown: &Demonstration, task: &Task) -> Vec<String> {
     let untouched = Example::of(shown, task)
         .map(|example| Meaning::untouched_in(&[example]))
         .unwrap_or_default();
-    [reported(task), not_moved(&untouched)].concat()
+    let untouched = untouched.iter().map(Untouched::to_string);
+    reported(task).into_iter().chain(untouched).collect()
 }
 
 /// The steps with their numbers, and the operations and pushes between them.

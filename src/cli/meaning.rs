@@ -1,6 +1,6 @@
 //! What demonstrations mean, in lines.
 
-use crate::program::Meaning;
+use crate::program::{Meaning, Untouched};
 
 /// The first line of a file that has a program.
 pub(super) const HEADING: &str = "# What demonstrations mean";
@@ -16,13 +16,6 @@ pub(super) fn told(meaning: &Meaning) -> Vec<String> {
         let differs = &other.decided_by.sentence;
         format!("Or {number}: {program} It differs {differs}.")
     });
-    let untouched = not_moved(&meaning.untouched);
+    let untouched = meaning.untouched.iter().map(Untouched::to_string);
     alternatives.chain(untouched).collect()
-}
-
-/// The objects that were not moved, with what they are.
-pub(super) fn not_moved(untouched: &[(String, Vec<String>)]) -> Vec<String> {
-    let lines = untouched.iter();
-    let lines = lines.map(|(kind, ids)| format!("Not moved, but of {kind}: {}.", ids.join(", ")));
-    lines.collect()
 }

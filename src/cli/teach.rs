@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    program::{Example, Meaning, TaskProgram},
+    program::{Example, Meaning, TaskProgram, Untouched},
     task::{Furniture, Task},
     xml::write,
 };
@@ -131,7 +131,8 @@ fn json(program: &TaskProgram, meaning: &Meaning) -> Value {
     let mut all = said(program);
     all["alternatives"] = alternatives.collect();
     let untouched = meaning.untouched.iter();
-    let untouched = untouched.map(|(of, objects)| json!({ "of": of, "objects": objects }));
+    let untouched =
+        untouched.map(|Untouched { of, objects }| json!({ "of": of, "objects": objects }));
     all["untouched"] = untouched.collect();
     all
 }

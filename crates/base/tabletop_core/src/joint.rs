@@ -82,3 +82,16 @@ pub struct Joint {
     /// True if the objects collide with each other.
     pub collides: bool,
 }
+
+impl Joint {
+    /// The joint by the ids of its objects; `None` if one of them has none.
+    pub fn spec(&self, id: impl FnMut(Entity) -> Option<String>) -> Option<JointSpec> {
+        let [first, second] = self.objects.map(id);
+        Some(JointSpec {
+            objects: [first?, second?],
+            frames: self.frames,
+            kind: self.kind,
+            collides: self.collides,
+        })
+    }
+}

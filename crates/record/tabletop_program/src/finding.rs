@@ -17,6 +17,7 @@ use tabletop_task::{Demonstration, Task};
 use crate::{program::TaskProgram, scene::TableScene};
 
 pub use example::Example;
+pub use untouched::Untouched;
 pub use variation::SceneVariation;
 
 use example::ExampleView;
@@ -32,8 +33,8 @@ pub struct Meaning {
     pub program: Option<TaskProgram>,
     /// Other programs that explain them all and act differently elsewhere, the shortest first.
     pub alternatives: Vec<Alternative>,
-    /// Objects like those that were moved which were left where they are, and what they are: reasons why the program does not say more.
-    pub untouched: Vec<(String, Vec<String>)>,
+    /// Objects like those that were moved which were left where they are: reasons why the program does not say more.
+    pub untouched: Vec<Untouched>,
 }
 
 /// A program that may have been meant, too.
@@ -65,8 +66,8 @@ impl Meaning {
         }
     }
 
-    /// The objects of examples like those that were moved which were left where they are, by what they are.
-    pub fn untouched_in(examples: &[Example]) -> Vec<(String, Vec<String>)> {
+    /// The objects of examples like those that were moved which were left where they are, by their kinds.
+    pub fn untouched_in(examples: &[Example]) -> Vec<Untouched> {
         let mut all = Vec::new();
         for found in examples.iter().flat_map(untouched) {
             if !all.contains(&found) {

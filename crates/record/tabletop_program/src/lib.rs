@@ -38,7 +38,7 @@ mod words;
 
 pub use attempts::{NextAttempt, ProgramAttempts, StepAttempt};
 pub use condition::Condition;
-pub use finding::{Alternative, Example, Meaning, SceneVariation};
+pub use finding::{Alternative, Example, Meaning, SceneVariation, Untouched};
 pub use hand::{HandFailure, HandProgress, HandStep, HandledObject};
 pub use instruction::{Instruction, Pattern, TargetPlace};
 pub use noun::{

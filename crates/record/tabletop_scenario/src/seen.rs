@@ -1,7 +1,7 @@
 //! The world as scenarios see it: its state at the end of the last tick.
 
 use bevy::prelude::*;
-use tabletop_core::{Bonds, Hand, Joint, JointSpec, ObjectSpec, Robot, RobotLayout, Table};
+use tabletop_core::{Bonds, Hand, Joint, ObjectSpec, Robot, RobotLayout, Table};
 use tabletop_geometry::{Bounds, Pose};
 use tabletop_program::TableScene;
 
@@ -66,15 +66,7 @@ impl<'a> Seen<'a> {
             let object = objects.find(|object| object.entity == entity)?;
             Some(object.spec.id.clone())
         };
-        let joints = self.joints.iter().filter_map(|joint| {
-            let [first, second] = joint.objects.map(id);
-            Some(JointSpec {
-                objects: [first?, second?],
-                frames: joint.frames,
-                kind: joint.kind,
-                collides: joint.collides,
-            })
-        });
+        let joints = self.joints.iter().filter_map(|joint| joint.spec(id));
         TableScene {
             table: self.table.unwrap_or_default(),
             objects: objects.collect(),

@@ -1,7 +1,7 @@
 //! The observer of a world.
 
 use bevy::{ecs::change_detection::Tick, prelude::*};
-use tabletop_core::{Joint, JointSpec, ObjectIndex, ObjectSpec, Robot, RobotLayout, Table};
+use tabletop_core::{Joint, ObjectIndex, ObjectSpec, Robot, RobotLayout, Table};
 use tabletop_geometry::Pose;
 
 use crate::sight::{LimbSight, SeenObject, Sight, angles};
@@ -71,16 +71,8 @@ impl Sight {
 
 fn sight(world: &mut World, joints: &[Joint]) -> Sight {
     let table = world.query::<&Table>().iter(world).next().copied();
-    let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
-    let joints = joints.iter().filter_map(|joint| {
-        let [first, second] = joint.objects.map(|entity| id(&entity));
-        Some(JointSpec {
-            objects: [first?, second?],
-            frames: joint.frames,
-            kind: joint.kind,
-            collides: joint.collides,
-        })
-    });
+    let id = |entity| Some(world.get::<ObjectSpec>(entity)?.id.clone());
+    let joints = joints.iter().filter_map(|joint| joint.spec(id));
     let objects = world.resource::<ObjectIndex>().iter().filter_map(|entity| {
         let spec = world.get::<ObjectSpec>(entity)?;
         let seen = SeenObject {

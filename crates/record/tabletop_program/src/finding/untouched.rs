@@ -1,6 +1,6 @@
 //! Objects like those that were moved which were left where they are.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, fmt};
 
 use crate::{
     finding::{example::Example, nouns::NounGuess},
@@ -9,8 +9,24 @@ use crate::{
     selection::ANYTHING,
 };
 
-/// The objects that are like all that were moved and were left where they are, by what they are.
-pub(crate) fn untouched(example: &Example) -> Vec<(String, Vec<String>)> {
+/// Objects like those that were moved which were left where they are.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Untouched {
+    /// The kind that they are, such as `every red block`.
+    pub of: String,
+    /// Their ids.
+    pub objects: Vec<String>,
+}
+
+impl fmt::Display for Untouched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { of, objects } = self;
+        write!(f, "Not moved, but of {of}: {}.", objects.join(", "))
+    }
+}
+
+/// The objects that are like all that were moved and were left where they are, by their kinds.
+pub(crate) fn untouched(example: &Example) -> Vec<Untouched> {
     let Some(scene) = example.tables.first() else {
         return Vec::new();
     };
@@ -28,7 +44,10 @@ pub(crate) fn untouched(example: &Example) -> Vec<(String, Vec<String>)> {
         members.retain(|id| !touched.contains(id.as_str()) && view.is_movable(id));
         let quantity = HowMany::Every;
         let noun = Noun::Described { quantity, of };
-        (!members.is_empty()).then(|| (noun.to_string(), members))
+        (!members.is_empty()).then(|| Untouched {
+            of: noun.to_string(),
+            objects: members,
+        })
     });
     left.collect()
 }

@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use tabletop_core::{Hand, Manipulator, SimTick};
 use tabletop_geometry::Rgb;
-use tabletop_program::{Example, Meaning, ProgramRun, TableScene, TaskProgram};
+use tabletop_program::{Example, Meaning, ProgramRun, TableScene, TaskProgram, Untouched};
 use tabletop_task::{ActDeed, Demonstration, ShownAct, Task, Track};
 
 use crate::scenes::{container, cube, hanoi, scene, spread};
@@ -95,18 +95,20 @@ fn mixed(colors: &[Rgb]) -> TableScene {
     scene(objects)
 }
 
+fn untouched(of: &str, objects: &[&str]) -> Untouched {
+    let objects = objects.iter().map(|id| (*id).to_owned());
+    Untouched {
+        of: of.into(),
+        objects: objects.collect(),
+    }
+}
+
 #[test]
 fn all_of_a_colour_were_meant() {
     let table = mixed(&[Rgb::RED, Rgb::GREEN, Rgb::RED, Rgb::GREEN]);
     let found = meant("Put every red block into the blue box.", &table);
     assert_eq!(first(&found), "Put every red block into the blue box.");
-    assert_eq!(
-        found.untouched,
-        [(
-            "every block".to_owned(),
-            vec!["C1".to_owned(), "C3".to_owned()]
-        )]
-    );
+    assert_eq!(found.untouched, [untouched("every block", &["C1", "C3"])]);
 }
 
 #[test]
@@ -119,7 +121,7 @@ fn one_that_was_left_says_that_a_number_was_meant() {
     assert!(
         found
             .untouched
-            .contains(&("every red block".to_owned(), vec!["C2".to_owned()]))
+            .contains(&untouched("every red block", &["C2"]))
     );
 }
 

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    HandCamera, HandCameras, HandImages, HeadCamera, Joint, JointSpec, JointState, ObjectIndex,
-    ObjectSpec, Paused, Robot, RobotLayout, Shape, Table,
+    HandCamera, HandCameras, HandImages, HeadCamera, Joint, JointState, ObjectIndex, ObjectSpec,
+    Paused, Robot, RobotLayout, Shape, Table,
 };
 use tabletop_geometry::Twist;
 
@@ -59,20 +59,13 @@ impl RecordedWorld<'_, '_> {
             objects: objects.collect(),
             joints: joints
                 .into_iter()
-                .filter_map(|joint| self.joint(joint))
+                .filter_map(|joint| joint.spec(|object| self.id(object)))
                 .collect(),
         }
     }
 
-    fn joint(&self, joint: &Joint) -> Option<JointSpec> {
-        let id = |object| self.spec(object).map(|spec| spec.id.clone());
-        let [first, second] = joint.objects;
-        Some(JointSpec {
-            objects: [id(first)?, id(second)?],
-            frames: joint.frames,
-            kind: joint.kind,
-            collides: joint.collides,
-        })
+    fn id(&self, object: Entity) -> Option<String> {
+        self.spec(object).map(|spec| spec.id.clone())
     }
 
     pub(crate) fn spec(&self, object: Entity) -> Option<&ObjectSpec> {

@@ -79,15 +79,7 @@ impl Knowledge<'_, '_> {
         let objects =
             objects.filter_map(|object| Some((object, self.specs.get(object).ok()?.clone())));
         let id = |object: Entity| self.specs.get(object).ok().map(|spec| spec.id.clone());
-        let joints = self.joints.iter().filter_map(|joint| {
-            let [first, second] = joint.objects.map(id);
-            Some(JointSpec {
-                objects: [first?, second?],
-                frames: joint.frames,
-                kind: joint.kind,
-                collides: joint.collides,
-            })
-        });
+        let joints = self.joints.iter().filter_map(|joint| joint.spec(id));
         KnownThings {
             objects: objects.collect(),
             joints: joints.collect(),
