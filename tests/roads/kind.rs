@@ -15,7 +15,7 @@ use tabletop::{
     prelude::*,
 };
 
-use super::{program::run, shown::Sentences};
+use super::{mock::MockServer, program::run, shown::Sentences};
 
 /// A kind of recording, by what made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,6 +48,7 @@ pub enum Kind {
     Gymnasium,
     Spliced,
     CutOff,
+    BesideRealRobot,
 }
 
 /// The stack that most kinds show.
@@ -57,7 +58,7 @@ const STACK: Sentences = &[
 ];
 
 impl Kind {
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::Scenario,
         Self::Undone,
         Self::Presets,
@@ -86,6 +87,7 @@ impl Kind {
         Self::Gymnasium,
         Self::Spliced,
         Self::CutOff,
+        Self::BesideRealRobot,
     ];
 
     /// What made it, in words.
@@ -117,6 +119,7 @@ impl Kind {
             Self::Edited => "`edit --retime`",
             Self::Spliced => "`edit --splice`",
             Self::CutOff => "cut off",
+            Self::BesideRealRobot => "beside a real robot",
             Self::World => "Python's `World`",
             Self::Gymnasium => "Gymnasium",
         }
@@ -136,7 +139,8 @@ impl Kind {
             | Self::MultipliedByPanda
             | Self::Watched
             | Self::Edited
-            | Self::CutOff => STACK,
+            | Self::CutOff
+            | Self::BesideRealRobot => STACK,
             Self::Undone | Self::Dragged | Self::Gymnasium => {
                 &["1. Put the red block on the blue block."]
             }
@@ -258,6 +262,14 @@ impl Kind {
                 let [undone, second] = [Self::Undone, Self::World].map(|kind| made.path(kind));
                 let [undone, second] = [&undone, &second].map(|path| path.to_str().unwrap());
                 recorded(&["edit", undone, "OUT", "--splice", second]);
+            }
+            Self::BesideRealRobot => {
+                let server = MockServer::start("baxter");
+                let path = "shipped:scenarios/stack_small.ron";
+                let address = server.address().to_string();
+                recorded(&[
+                    "run", path, "--shadow", &address, "--record", "OUT", "--quiet",
+                ]);
             }
             Self::CutOff => {
                 copy(Path::new(demo), folder);

@@ -5,6 +5,9 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kind;
+#[path = "../../crates/robot/tabletop_bridge/tests/rosbridge/mock.rs"]
+#[expect(dead_code, reason = "it has more than is needed here")]
+mod mock;
 mod playback;
 mod program;
 mod road;

@@ -12,7 +12,7 @@ use super::{
 };
 
 /// Commands that read no recording.
-pub const WITHOUT_RECORDING: [&str; 15] = [
+pub const WITHOUT_RECORDING: [&str; 16] = [
     "run",
     "serve-policy",
     "tell",
@@ -21,6 +21,7 @@ pub const WITHOUT_RECORDING: [&str; 15] = [
     "robot",
     "keys",
     "init",
+    "docs",
     "shipped",
     "soak",
     "validate",

@@ -1,6 +1,6 @@
 //! Pictures of a robot's cameras, on a connection of their own: on that of commands they would make them late.
 
-use std::{sync::Arc, time::Duration};
+use std::{sync::Arc, thread::sleep, time::Duration};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD as BASE64};
 use serde_json::{Value as Json, json};
@@ -21,6 +21,9 @@ const PERIOD: Duration = Duration::from_millis(200);
 
 /// How long the opening of a camera may take.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// How often a thread looks that waits for the first picture.
+const LOOK: Duration = Duration::from_millis(5);
 
 /// The most columns and rows of a picture.
 const MOST_SIDE: u64 = 4096;
@@ -110,6 +113,18 @@ impl PictureFeed {
     /// The newest picture, if there was one.
     pub fn latest(&self) -> Option<Arc<RobotPicture>> {
         self.follower.heard().latest.picture.clone()
+    }
+
+    /// Waits for the first picture, but no longer than this. False if none has come.
+    pub fn wait(&self, most: Duration) -> bool {
+        let end = self.clock.now() + most;
+        while self.latest().is_none() {
+            if self.clock.now() >= end || self.fault().is_some() {
+                return false;
+            }
+            sleep(LOOK);
+        }
+        true
     }
 
     /// How old the newest picture is.

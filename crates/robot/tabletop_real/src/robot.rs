@@ -1,6 +1,6 @@
 //! The real robot.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Duration};
 
 use bevy::prelude::*;
 use tabletop_bridge::{
@@ -11,6 +11,9 @@ use tabletop_core::Table;
 use tabletop_planner::RobotBody;
 
 use crate::body_guard::BodyGuard;
+
+/// How long the first picture is waited for.
+const FIRST_PICTURE: Duration = Duration::from_secs(1);
 
 /// A real robot.
 #[derive(Resource)]
@@ -38,7 +41,8 @@ impl RealLink {
     }
 }
 
-/// The pictures of the camera in a robot's head; `None` if it has none there.
+/// The pictures of the camera in a robot's head; `None` if it has none there. The first one is waited for, so that a recording begins with a picture; a camera
+/// that sends none for a second may send some later.
 ///
 /// # Errors
 /// The camera cannot be opened.
@@ -49,7 +53,10 @@ pub fn head_pictures(
     const HEAD: &str = "head";
     let mut cameras = profile.cameras.iter();
     cameras.find(|camera| camera.name == HEAD)?;
-    Some(PictureFeed::connect(address, profile, HEAD))
+    let connected = PictureFeed::connect(address, profile, HEAD);
+    Some(connected.inspect(|feed| {
+        feed.wait(FIRST_PICTURE);
+    }))
 }
 
 impl RealRobot {

@@ -273,6 +273,7 @@ fn pictures_are_those_of_the_real_camera_and_none_is_drawn() {
         image.received
     };
     let looks = |app: &mut App, ticks: usize| -> Vec<_> { (0..ticks).map(|_| look(app)).collect() };
+    assert!(look(&mut app).is_some(), "the first look sees a picture");
     let mut received = looks(&mut app, 90);
     assert!(received.last().copied().flatten().is_some());
     received.dedup();
