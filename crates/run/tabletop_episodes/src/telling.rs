@@ -56,7 +56,7 @@ pub fn carry_out(
     performer: ProgramActor,
     mut tell: impl FnMut(usize, &str),
 ) -> Told {
-    let mut scene = scene_of(app, objects);
+    let mut scene = table_of(app.world_mut(), objects);
     let mut attempts = ProgramAttempts::begin(program, &scene);
     let mut corrections = 0;
     let failure = loop {
@@ -88,7 +88,7 @@ pub fn carry_out(
         }
         app.step(ProgramAttempts::SETTLING);
         attempts.did(attempt);
-        scene = scene_of(app, objects);
+        scene = table_of(app.world_mut(), objects);
     };
     Told {
         steps: attempts.steps,
@@ -97,9 +97,9 @@ pub fn carry_out(
     }
 }
 
-/// These objects where they are now.
-fn scene_of(app: &mut App, objects: &[ObjectSpec]) -> TableScene {
-    let sight = Sight::of(app.world_mut());
+/// These objects where they are now, as programs of tasks see them.
+pub fn table_of(world: &mut World, objects: &[ObjectSpec]) -> TableScene {
+    let sight = Sight::of(world);
     let here = objects.iter().filter_map(|object| {
         let pose = sight.objects.get(&object.id)?.pose;
         Some(ObjectSpec {

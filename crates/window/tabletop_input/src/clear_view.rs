@@ -21,7 +21,7 @@ fn go_across(
     camera: Single<&Transform, With<UserCamera>>,
     mut motions: MessageWriter<CameraMotion>,
 ) {
-    let is_at_work = matches!(*imitating, Imitating::Step { .. });
+    let is_at_work = matches!(*imitating, Imitating::Step(_));
     let begins = is_at_work && !std::mem::replace(&mut *has_looked, is_at_work);
     if !begins || look.is_translucent {
         return;
@@ -38,6 +38,7 @@ fn go_across(
 mod tests {
     use tabletop_core::Figure;
     use tabletop_geometry::{Rgb, Triangles};
+    use tabletop_user::ImitatedStep;
 
     use super::*;
     use crate::test_world::TestWorld;
@@ -66,11 +67,11 @@ mod tests {
             test.app.world_mut().spawn((figure, place));
         }
         for number in 1..3 {
-            test.app.insert_resource(Imitating::Step {
+            let step = ImitatedStep {
                 number,
-                tries: 0,
-                is_planning: false,
-            });
+                ..default()
+            };
+            test.app.insert_resource(Imitating::Step(step));
             test.hold_still();
         }
         let mut motions = test

@@ -27,6 +27,14 @@ pub enum TaskOrder {
     Stop,
     /// Put every object back where the recording began.
     PutBack,
+    /// Let the robot do what the [program](crate::TaughtProgram) says with the objects on the table.
+    Perform,
+    /// Take the next recording as one more demonstration of the program.
+    ShowAgain,
+    /// Put up the table on which this [other program](crate::TaughtProgram::others) acts differently, and take the next recording as one more demonstration.
+    Ask(usize),
+    /// This other program is the one that is meant.
+    Answer(usize),
 }
 
 /// The robot's progress with the demonstrated task. The crate that moves the robot sets it.
@@ -38,14 +46,22 @@ pub enum Imitating {
     /// The robot is being put at the table.
     Preparing,
     /// The robot does a step.
-    Step {
-        /// The number of the step, from 1.
-        number: usize,
-        /// Number of earlier tries.
-        tries: usize,
-        /// True while the motion is still being planned.
-        is_planning: bool,
-    },
+    Step(ImitatedStep),
+}
+
+/// A step that the robot does.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ImitatedStep {
+    /// Its number, from 1.
+    pub number: usize,
+    /// The number of steps of the task; `None` for a program, whose steps are decided one after the other.
+    pub of: Option<usize>,
+    /// It in words.
+    pub sentence: String,
+    /// Number of earlier tries.
+    pub tries: usize,
+    /// True while the motion is still being planned.
+    pub is_planning: bool,
 }
 
 impl Imitating {
@@ -53,7 +69,7 @@ impl Imitating {
     pub const fn is_on(&self) -> bool {
         match self {
             Self::Idle => false,
-            Self::Preparing | Self::Step { .. } => true,
+            Self::Preparing | Self::Step(_) => true,
         }
     }
 }

@@ -25,6 +25,7 @@ mod preset_seeds;
 mod quit_question;
 mod robot_look;
 mod shelf;
+mod taught_program;
 
 pub use ambience::Ambience;
 pub use chosen::Chosen;
@@ -36,7 +37,7 @@ pub use editing::{EditOrder, Editing, TimelineEdit};
 pub use ghost::{Ghost, Ghosts};
 pub use head_view::HeadView;
 pub use held_axes::HeldAxes;
-pub use imitating::{Imitating, TaskOrder};
+pub use imitating::{ImitatedStep, Imitating, TaskOrder};
 pub use keymap::{
     Action, ActionGroup, BindingError, Gamepad, GamepadControl, JointKeyError, KeyBinding,
     KeyLetters, KeySystems, KeyboardFocus, Keymap, Keys, Modifiers, Situation, StickWay, Way,
@@ -54,6 +55,7 @@ pub use robot_look::RobotLook;
 pub use shelf::{
     Errand, RecordingDigest, RunningErrand, Shelf, ShelfOrder, ShelvedRecording, TRASH,
 };
+pub use taught_program::{OtherProgram, TaughtProgram};
 
 use bevy::prelude::*;
 
@@ -98,6 +100,7 @@ impl Plugin for UserPlugin {
             .init_resource::<QuitQuestion>()
             .init_resource::<Shelf>()
             .init_resource::<Steering>()
+            .init_resource::<TaughtProgram>()
             .register_type::<Chosen>()
             .register_type::<DragPlane>()
             .register_type::<Dragging>()

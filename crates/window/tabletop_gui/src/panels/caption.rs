@@ -5,8 +5,7 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{Align2, Area, Context, Frame, Id, Order, Rect, RichText, vec2},
 };
-use tabletop_core::ShownTask;
-use tabletop_user::{Action, Imitating, Keymap, TaskOrder};
+use tabletop_user::{Action, ImitatedStep, Imitating, Keymap, TaskOrder};
 
 use crate::{
     panels::{arrangement::Panels, window::free_desk},
@@ -20,7 +19,6 @@ const ABOVE: f32 = 12.0;
 /// The content of the caption.
 struct Model<'a> {
     imitating: &'a Imitating,
-    task: &'a ShownTask,
     keymap: &'a Keymap,
     /// The part of the screen that is free at its lower edge.
     desk: Rect,
@@ -33,7 +31,6 @@ pub(crate) fn plugin(app: &mut App) {
 fn show_caption(
     mut contexts: EguiContexts,
     imitating: Res<Imitating>,
-    task: Res<ShownTask>,
     keymap: Res<Keymap>,
     panels: Res<Panels>,
     mut orders: MessageWriter<TaskOrder>,
@@ -43,7 +40,6 @@ fn show_caption(
     };
     let model = Model {
         imitating: &imitating,
-        task: &task,
         keymap: &keymap,
         desk: free_desk(context, &panels),
     };
@@ -52,7 +48,7 @@ fn show_caption(
 
 /// Shows the sentence while the robot is busy, and returns the user's order.
 fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
-    let (sentence, remark) = texts(model.imitating, model.task)?;
+    let (sentence, remark) = texts(model.imitating)?;
     let stop = format!(
         "The robot stops where it is ({})",
         model.keymap.hint(Action::Imitate)
@@ -81,18 +77,21 @@ fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
 }
 
 /// The texts about the present step and its progress; `None` if the robot is not busy.
-fn texts(imitating: &Imitating, task: &ShownTask) -> Option<(String, &'static str)> {
+fn texts(imitating: &Imitating) -> Option<(String, &'static str)> {
     match imitating {
         Imitating::Idle => None,
         Imitating::Preparing => Some(("The robot gets ready.".into(), "")),
-        Imitating::Step {
+        Imitating::Step(ImitatedStep {
             number,
+            of,
+            sentence,
             tries,
             is_planning,
-        } => {
-            let sentence = task.steps.get(number - 1).map(|step| &*step.sentence);
-            let all = task.steps.len();
-            let sentence = format!("{number} of {all}: {}", sentence.unwrap_or_default());
+        }) => {
+            let sentence = match of {
+                Some(all) => format!("{number} of {all}: {sentence}"),
+                None => format!("{number}: {sentence}"),
+            };
             let remark = match (is_planning, tries) {
                 (true, _) => "finding a way …",
                 (false, 0) => "",
@@ -105,38 +104,24 @@ fn texts(imitating: &Imitating, task: &ShownTask) -> Option<(String, &'static st
 
 #[cfg(test)]
 mod tests {
-    use egui_kittest::{Harness, kittest::Queryable as _};
-    use tabletop_core::{ShownStep, SimTick};
-
     use super::*;
+    use egui_kittest::{Harness, kittest::Queryable as _};
 
     struct Stage {
         imitating: Imitating,
-        task: ShownTask,
         keymap: Keymap,
         orders: Vec<TaskOrder>,
     }
 
     fn harness(imitating: Imitating) -> Harness<'static, Stage> {
-        let step = |sentence: &str| ShownStep {
-            sentence: sentence.into(),
-            grasp: SimTick(1),
-            release: SimTick(2),
-            ..default()
-        };
         let stage = Stage {
             imitating,
-            task: ShownTask {
-                steps: vec![step("Open the box."), step("Close the box.")],
-                ..default()
-            },
             keymap: Keymap::default(),
             orders: Vec::new(),
         };
         let frame = |ui: &mut bevy_egui::egui::Ui, stage: &mut Stage| {
             let model = Model {
                 imitating: &stage.imitating,
-                task: &stage.task,
                 keymap: &stage.keymap,
                 desk: free_desk(ui.ctx(), &Panels::default()),
             };
@@ -149,10 +134,14 @@ mod tests {
 
     #[test]
     fn the_present_step_is_reported_and_how_it_gets_on() {
-        let step = |tries, is_planning| Imitating::Step {
-            number: 2,
-            tries,
-            is_planning,
+        let step = |tries, is_planning| {
+            Imitating::Step(ImitatedStep {
+                number: 2,
+                of: Some(2),
+                sentence: "Close the box.".into(),
+                tries,
+                is_planning,
+            })
         };
         for (imitating, remark) in [
             (step(0, true), Some("finding a way …")),
@@ -171,6 +160,18 @@ mod tests {
                 .query_by_label("The robot gets ready.")
                 .is_some()
         );
+    }
+
+    #[test]
+    fn a_step_of_a_program_has_a_number_alone() {
+        let step = ImitatedStep {
+            number: 3,
+            sentence: "Put the red block into the box.".into(),
+            ..default()
+        };
+        let harness = harness(Imitating::Step(step));
+        let caption = harness.query_by_label("3: Put the red block into the box.");
+        assert!(caption.is_some());
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod axis;
 mod edits;
 mod film;
 mod lesson;
+mod meaning;
 mod model;
 mod orders;
 mod segment_ends;
@@ -20,7 +21,7 @@ use bevy_egui::{
     egui::{self, Ui},
 };
 use tabletop_core::{History, Paused, Playback, ShownTask, SimTick, Timeline, TimelineStage};
-use tabletop_user::{EditOrder, Editing, Imitating, Keymap};
+use tabletop_user::{EditOrder, Editing, Imitating, Keymap, TaughtProgram};
 
 use self::{
     model::{Model, Moment, Request},
@@ -213,6 +214,7 @@ struct Sources<'w> {
     history: Res<'w, History>,
     keymap: Res<'w, Keymap>,
     task: Res<'w, ShownTask>,
+    taught: Res<'w, TaughtProgram>,
     imitating: Res<'w, Imitating>,
     editing: Res<'w, Editing>,
 }
@@ -236,6 +238,7 @@ fn show_panel(
         history: *source.history,
         keymap: &source.keymap,
         task: &source.task,
+        taught: &source.taught,
         imitating: &source.imitating,
         editing: &source.editing,
     };

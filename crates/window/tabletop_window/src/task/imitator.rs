@@ -1,23 +1,16 @@
 //! The robot that imitates while time passes in the window.
 
-use std::time::Duration;
-
 use bevy::prelude::*;
-use tabletop_controller::{RobotController, Sight};
+use tabletop_controller::RobotController;
 use tabletop_core::{
-    Actor, Agent, ObjectIndex, ObjectSpec, OrderSystems, Paused, Replaying, RestApp as _,
-    RestingSystems, Robot, RobotCommand, RobotLayout, Table, WriteCommand as _,
+    Actor, Agent, OrderSystems, Paused, Replaying, RestApp as _, RestingSystems, Robot,
+    RobotCommand, WriteCommand as _,
 };
-use tabletop_planner::{Execution, ExecutionPace, Following, Imitation, RobotBody, goal_poses};
-use tabletop_robot::Description;
-use tabletop_task::Task;
-use tabletop_user::{Ghost, Ghosts, Imitating, Notices, Tone};
+use tabletop_planner::Execution;
+use tabletop_user::{Ghost, Ghosts, ImitatedStep, Imitating, Notices, Tone};
 
-use super::understood::{Lesson, Understood};
-use tabletop_real::{BodyGuard, RealRobot};
+use super::assignment::{Act, Assignment, Next};
 
-/// Time for which a tick waits for its drives.
-const PATIENCE: Duration = Duration::from_millis(4);
 /// Number of ticks until the robot is at the table, and objects on it are at rest.
 const PREPARATION: u32 = 30;
 
@@ -29,15 +22,11 @@ pub(super) struct RobotImitator(ImitatorState);
 enum ImitatorState {
     #[default]
     Idle,
-    Preparing {
-        lesson: Box<Lesson>,
-        ticks: u32,
-    },
-    /// The [`RobotController`] is an [`Execution`].
+    /// What is next begins when the robot is at the table, and objects on it are at rest.
+    Preparing { assignment: Assignment, ticks: u32 },
     Acting {
-        task: Box<Task>,
-        /// Ghosts of objects at their goals, with their steps.
-        ghosts: Vec<(usize, Ghost)>,
+        assignment: Assignment,
+        act: Box<Act>,
     },
 }
 
@@ -59,20 +48,13 @@ fn is_busy(imitator: Res<RobotImitator>) -> bool {
 }
 
 impl RobotImitator {
-    /// Prepares the imitation.
-    pub fn prepare(
-        &mut self,
-        understood: &Understood,
-        controller: &mut RobotController,
-    ) -> Result<(), String> {
-        let lesson = understood.lesson();
-        let lesson = lesson.ok_or("nothing was shown yet: record a demonstration first")?;
+    /// Prepares what the robot is to do.
+    pub fn prepare(&mut self, assignment: Assignment, controller: &mut RobotController) {
         self.stop(controller);
         self.0 = ImitatorState::Preparing {
-            lesson: Box::new(lesson.clone()),
+            assignment,
             ticks: 0,
         };
-        Ok(())
     }
 
     pub fn stop(&mut self, controller: &mut RobotController) {
@@ -87,26 +69,30 @@ impl RobotImitator {
         match &self.0 {
             ImitatorState::Idle => Imitating::Idle,
             ImitatorState::Preparing { .. } => Imitating::Preparing,
-            ImitatorState::Acting { .. } => match (execution, execution.and_then(Execution::doing))
-            {
-                (Some(execution), Some(doing)) => Imitating::Step {
-                    number: doing.step,
-                    tries: doing.tries,
-                    is_planning: execution.is_planning(),
-                },
-                _ => Imitating::Preparing,
-            },
+            ImitatorState::Acting { assignment, act } => {
+                match (execution, execution.and_then(Execution::doing)) {
+                    (Some(execution), Some(doing)) => {
+                        let step = assignment.step(doing.step, &act.task);
+                        Imitating::Step(ImitatedStep {
+                            tries: step.tries + doing.tries,
+                            is_planning: execution.is_planning(),
+                            ..step
+                        })
+                    }
+                    _ => Imitating::Preparing,
+                }
+            }
         }
     }
 
     /// Ghosts of the steps that are not done yet.
     fn ghosts(&self, execution: Option<&Execution>) -> Vec<Ghost> {
-        let ImitatorState::Acting { ghosts, .. } = &self.0 else {
+        let ImitatorState::Acting { act, .. } = &self.0 else {
             return Vec::new();
         };
         let doing = execution.and_then(Execution::doing);
         let present = doing.map_or(1, |doing| doing.step);
-        let left = ghosts.iter().filter(|(step, _)| *step >= present);
+        let left = act.ghosts.iter().filter(|(step, _)| *step >= present);
         left.map(|(step, ghost)| Ghost {
             is_next: *step == present,
             ..ghost.clone()
@@ -160,99 +146,66 @@ fn is_there(world: &World) -> bool {
 impl RobotImitator {
     /// Continues by a tick. Returns the end.
     fn go_on(&mut self, world: &mut World) -> Option<Result<String, String>> {
-        match &mut self.0 {
+        match std::mem::take(&mut self.0) {
             ImitatorState::Idle => None,
-            ImitatorState::Preparing { lesson, ticks } => {
-                if *ticks == 0 && !is_there(world) {
+            ImitatorState::Preparing { assignment, ticks } => {
+                if ticks == 0 && !is_there(world) {
                     world.write_command_of(Actor::Panel, RobotCommand::Show(true));
                 }
-                *ticks += 1;
-                if *ticks < PREPARATION {
-                    return None;
-                }
-                match begin(world, lesson) {
-                    Ok(acting) => {
-                        self.0 = acting;
+                let ticks = ticks + 1;
+                match ticks < PREPARATION {
+                    true => {
+                        self.0 = ImitatorState::Preparing { assignment, ticks };
                         None
                     }
-                    Err(reason) => Some(Err(reason)),
+                    false => self.begin(assignment, world),
                 }
             }
-            ImitatorState::Acting { task, .. } => {
-                let controller = world.resource::<RobotController>();
-                let execution = controller.get::<Execution>()?;
-                Some(reported(task, execution.result()?))
+            ImitatorState::Acting { assignment, act } => self.act_on(assignment, act, world),
+        }
+    }
+
+    fn begin(
+        &mut self,
+        mut assignment: Assignment,
+        world: &mut World,
+    ) -> Option<Result<String, String>> {
+        match assignment.begin(world) {
+            Ok(Next::Act(act)) => {
+                let act = Box::new(act);
+                self.0 = ImitatorState::Acting { assignment, act };
+                None
             }
+            Ok(Next::Done(report)) => Some(Ok(report)),
+            Err(reason) => Some(Err(reason)),
         }
     }
-}
 
-/// The result in a sentence.
-fn reported(task: &Task, imitation: &Imitation) -> Result<String, String> {
-    match &imitation.failure {
-        None => Ok("the robot has done the task".into()),
-        Some((step, failure)) => {
-            let sentence = task.step(*step).map_or("", |step| step.sentence.as_str());
-            Err(format!("step {step} ({sentence}): {failure}"))
-        }
-    }
-}
-
-/// Begins with the present objects on the table.
-fn begin(world: &mut World, lesson: &Lesson) -> Result<ImitatorState, String> {
-    let index = world.resource::<ObjectIndex>();
-    let objects: Vec<_> = index
-        .iter()
-        .filter_map(|object| world.get::<ObjectSpec>(object).cloned())
-        .collect();
-    let binding = lesson.task.bind(&lesson.requirements, &objects);
-    let binding = binding.map_err(|unbound| unbound.to_string())?;
-    let table = world.query::<&Table>().iter(world).next().copied();
-    let description = world
-        .get_resource::<Description>()
-        .ok_or("there is no robot")?;
-    let body = RobotBody::new(
-        &description.layout,
-        description.model.clone(),
-        &table.unwrap_or_default(),
-    );
-    let body = body.map_err(|error| error.to_string())?;
-    let is_real = world.contains_resource::<RealRobot>();
-    let body = match is_real {
-        true => body.guarded(BodyGuard::GAPS),
-        false => body,
-    };
-    let mut task = lesson.task.clone();
-    task.phrase(&lesson.requirements);
-    let sight = Sight::of(world);
-    let shape = |id: &str| Some(objects.iter().find(|object| object.id == id)?.shape.clone());
-    let ghosts = goal_poses(&task, &binding, &sight);
-    let ghosts = ghosts.into_iter().filter_map(|(step, id, pose)| {
-        let ghost = Ghost {
-            shape: shape(&id)?,
-            id,
-            pose,
-            is_next: false,
+    fn act_on(
+        &mut self,
+        mut assignment: Assignment,
+        act: Box<Act>,
+        world: &World,
+    ) -> Option<Result<String, String>> {
+        let execution = world.resource::<RobotController>().get::<Execution>();
+        let Some(result) = execution.and_then(Execution::result) else {
+            self.0 = ImitatorState::Acting { assignment, act };
+            return None;
         };
-        Some((step, ghost))
-    });
-    let ghosts = ghosts.collect();
-    let layout = world.resource::<RobotLayout>().clone();
-    let pace = ExecutionPace {
-        patience: PATIENCE,
-        following: match is_real {
-            true => Following::MACHINE,
-            false => Following::EXACT,
-        },
-    };
-    let execution = Execution::begin(layout, body, task.clone(), binding, sight, SEED, pace);
-    let execution = execution.map_err(|error| error.to_string())?;
-    world.insert_resource(RobotController::new(execution));
-    Ok(ImitatorState::Acting {
-        task: Box::new(task),
-        ghosts,
-    })
+        if let Some((number, failure)) = &result.failure {
+            let step = assignment.step(*number, &act.task);
+            let ImitatedStep {
+                number, sentence, ..
+            } = step;
+            return Some(Err(format!("step {number} ({sentence}): {failure}")));
+        }
+        let report = assignment.did();
+        if report.is_none() {
+            self.0 = ImitatorState::Preparing {
+                assignment,
+                ticks: 0,
+            };
+        }
+        report.map(Ok)
+    }
 }
-
-/// Seed of random choices.
-const SEED: u64 = 0;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 use tabletop_core::{SceneSpec, ShownTask, Timeline, TimelineStage};
+use tabletop_program::Example;
 use tabletop_recorder::RecordingReader;
 use tabletop_storage::Storage;
 use tabletop_task::{Demonstration, RequirementError, Requirements, Role, Task};
@@ -13,6 +14,7 @@ use tabletop_episodes::{
     shown_task::{shown_task, value},
 };
 
+use super::teaching::Teaching;
 use crate::background::BackgroundWork;
 
 /// The task of the recording that was made or opened last, if it shows one.
@@ -34,6 +36,8 @@ pub(super) struct Lesson {
     pub task: Task,
     pub requirements: Requirements,
     pub scene: Option<SceneSpec>,
+    /// It as an example of a program; `None` if no program says what it shows.
+    pub example: Option<Example>,
 }
 
 impl Lesson {
@@ -43,11 +47,13 @@ impl Lesson {
         let shown = Demonstration::of(&recording).map_err(|error| said(&error))?;
         let task = Task::of(&shown);
         let requirements = Requirements::read_for(&task, folder).map_err(|error| said(&error))?;
+        let example = Example::of(&shown, &task).filter(|_| !task.steps.is_empty());
         Ok(Self {
             folder: folder.to_owned(),
             task,
             requirements,
             scene: scene_at_beginning(recording.session()),
+            example,
         })
     }
 
@@ -78,7 +84,7 @@ pub(super) fn read_recording(timeline: Res<Timeline>, mut understood: ResMut<Und
 }
 
 /// Takes over the result of reading. A recording in which no hand acts does not replace the earlier task.
-pub(super) fn take_read_task(mut understood: ResMut<Understood>) {
+pub(super) fn take_read_task(mut understood: ResMut<Understood>, mut teaching: ResMut<Teaching>) {
     let reading = understood.bypass_change_detection().reading.as_mut();
     let Some(read) = reading.and_then(BackgroundWork::result) else {
         return;
@@ -87,6 +93,7 @@ pub(super) fn take_read_task(mut understood: ResMut<Understood>) {
     match read {
         Ok(lesson) if lesson.task.steps.is_empty() && understood.lesson.is_some() => {}
         Ok(lesson) => {
+            teaching.show(lesson.example.clone());
             understood.lesson = Some(lesson);
             understood.fault = None;
         }
@@ -105,9 +112,10 @@ impl Understood {
         lesson.filter(|lesson| !lesson.task.steps.is_empty())
     }
 
-    /// The scene at the beginning.
-    pub fn scene(&self) -> Option<&SceneSpec> {
-        self.lesson.as_ref()?.scene.as_ref()
+    /// The scene at the beginning of the recording.
+    pub fn beginning(&self) -> Result<SceneSpec, String> {
+        let scene = self.lesson.as_ref().and_then(|lesson| lesson.scene.clone());
+        scene.ok_or("the recording does not contain the scene at its beginning".into())
     }
 
     /// Requires a property of a role's object, or no longer, and keeps this with the recording.

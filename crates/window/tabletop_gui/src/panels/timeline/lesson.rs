@@ -6,7 +6,10 @@ use bevy_egui::egui::{
 use tabletop_core::{Required, ShownProperty, ShownRole};
 use tabletop_user::{Action, Imitating, TaskOrder};
 
-use super::model::{Model, Request};
+use super::{
+    meaning,
+    model::{Model, Request},
+};
 use crate::widgets::{button::button, style::ACCENT};
 
 /// The most height of the list of steps and of that of objects, in points.
@@ -29,6 +32,7 @@ pub(super) fn show(ui: &mut Ui, model: &Model) -> Vec<Request> {
     }
     let mut orders: Vec<_> = acting(ui, model).into_iter().collect();
     steps(ui, model);
+    orders.extend(meaning::show(ui, model.taught, model.imitating.is_on()));
     CollapsingHeader::new("What must be the same")
         .default_open(false)
         .show(ui, |ui| {
@@ -73,7 +77,7 @@ fn acting(ui: &mut Ui, model: &Model) -> Option<TaskOrder> {
 /// The sentences, of which that of the present step stands out.
 fn steps(ui: &mut Ui, model: &Model) {
     let present = match model.imitating {
-        Imitating::Step { number, .. } => Some(*number),
+        Imitating::Step(step) => step.of.map(|_| step.number),
         Imitating::Idle | Imitating::Preparing => None,
     };
     ScrollArea::vertical()

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use tabletop_core::{
     History, Playback, ShownStep, ShownTask, SimTick, Timeline, TimelineSegment, TimelineStage,
 };
-use tabletop_user::{EditOrder, Editing, Imitating, Keymap, Pace, TaskOrder};
+use tabletop_user::{EditOrder, Editing, Imitating, Keymap, Pace, TaskOrder, TaughtProgram};
 
 use super::axis::seconds;
 
@@ -22,6 +22,8 @@ pub(crate) struct Model<'a> {
     pub keymap: &'a Keymap,
     /// The task of the recording.
     pub task: &'a ShownTask,
+    /// The program that the last demonstrations mean.
+    pub taught: &'a TaughtProgram,
     pub imitating: &'a Imitating,
     pub editing: &'a Editing,
 }

@@ -1,5 +1,6 @@
 mod edits;
 mod lesson;
+mod meaning;
 
 use std::fs::File;
 
@@ -25,6 +26,7 @@ struct Desk {
     history: History,
     keymap: Keymap,
     task: ShownTask,
+    taught: TaughtProgram,
     imitating: Imitating,
     editing: Editing,
     view: View,
@@ -55,6 +57,7 @@ impl Desk {
             },
             keymap: Keymap::default(),
             task: ShownTask::default(),
+            taught: TaughtProgram::default(),
             imitating: Imitating::Idle,
             editing: Editing::default(),
             view: View::default(),
@@ -72,6 +75,7 @@ impl Desk {
             history: desk.history,
             keymap: &desk.keymap,
             task: &desk.task,
+            taught: &desk.taught,
             imitating: &desk.imitating,
             editing: &desk.editing,
         };
