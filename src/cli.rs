@@ -13,6 +13,7 @@ mod dataset;
 mod demonstration;
 #[cfg(feature = "window")]
 mod display;
+mod docs;
 mod duration;
 mod edit;
 mod explain;
@@ -146,6 +147,8 @@ enum Command {
     Init(init::InitArgs),
     /// List the task files, scenarios, scripts and robots inside the program, which every command finds by their paths
     Shipped(shipped::ShippedArgs),
+    /// Open the documentation in a browser, with contents and search
+    Docs(docs::DocsArgs),
     /// Act at random, for hours, as a user could, and check the world after every tick
     Soak(soak::SoakArgs),
     /// Measure the physics beside closed-form results of mechanics; exit code 1 if one is missed by more than its limit
@@ -184,6 +187,7 @@ Examples:
   tabletop export many --to lerobot dataset     make a dataset of them that LeRobot reads
   tabletop video demo demo.mp4 --captions       make a video of the recording
   tabletop run --script python --seconds 20     let a script drive the robot
+  tabletop docs                                 read the documentation in a browser
   tabletop init work                            write all shipped files to a folder, to change them
 
 Files:
@@ -227,6 +231,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Keys(args)) => keys::list(&args),
         Some(Command::Init(args)) => init::init(&args),
         Some(Command::Shipped(args)) => shipped::list(&args),
+        Some(Command::Docs(args)) => docs::docs(&args),
         Some(Command::Soak(args)) => soak::soak(&args),
         Some(Command::Validate(args)) => validate::validate(&args),
         Some(Command::Benchmark(args)) => benchmark::benchmark(&args),

@@ -35,7 +35,7 @@
 //! | [`dataset`] | Folders of recordings and exported datasets: imported from other programs, described, checked, repaired, merged and split |
 //! | [`export`] | Recordings as datasets of other tools |
 //! | [`policy`] | A policy learned from one demonstration: from the head camera's picture to what is to be taken next, and where it is to be put |
-//! | [`report`] | Recordings as pages that a browser shows without network: what was done, a player of the pictures, plots and numbers of one recording, or a table of many |
+//! | [`report`] | Recordings as pages that a browser shows without network: what was done, a player of the pictures, plots and numbers of one recording, or a table of many; and how often a policy did tasks |
 //! | [`wire`] | Policies by wire: openpi's protocol, a client and a server of it, and the mappings of its keys to a robot |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
@@ -57,6 +57,7 @@
 //! ```
 
 pub use tabletop_benchmark as benchmark;
+pub use tabletop_book as book;
 pub use tabletop_bridge as bridge;
 pub use tabletop_camera as camera;
 pub use tabletop_controller as controller;

@@ -16,6 +16,7 @@ const BEGINNING: u64 = 4096;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ResultKind {
     Page,
+    Book,
     Video,
     Animation,
     Picture,
@@ -32,6 +33,7 @@ impl ResultKind {
     fn name(self) -> &'static str {
         match self {
             Self::Page => "a page of tabletop's",
+            Self::Book => "the documentation",
             Self::Video => "an MP4 video",
             Self::Animation => "a GIF animation",
             Self::Picture => "a PNG picture",
@@ -51,6 +53,7 @@ impl ResultKind {
         let text = text.trim_start();
         match self {
             Self::Page => text.contains(crate::report::GENERATOR),
+            Self::Book => text.contains(crate::book::GENERATOR),
             Self::Video => bytes.get(4..8) == Some(b"ftyp"),
             Self::Animation => bytes.starts_with(b"GIF8"),
             Self::Picture => bytes.starts_with(b"\x89PNG"),

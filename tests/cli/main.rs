@@ -6,6 +6,7 @@ mod anywhere;
 mod at_once;
 mod cut_off;
 mod dataset;
+mod documentation;
 mod edit;
 mod element_docs;
 mod explain;

@@ -31,8 +31,9 @@ const SMALL: [(&str, &str); 6] = [
     ("--shard", "1/2"),
 ];
 
-/// Options with which a command needs a window, a robot, a program of the reader's own, or a policy that has learned for long, and the command that serves for ever.
-const ELSEWHERE: [&str; 8] = [
+/// Options with which a command needs a window, a robot, a program of the reader's own, or a policy that has learned for long, and the commands that serve for ever and open
+/// a browser.
+const ELSEWHERE: [&str; 9] = [
     "--window",
     "--real",
     "--shadow",
@@ -41,6 +42,7 @@ const ELSEWHERE: [&str; 8] = [
     "--desktop",
     "--policy",
     "serve-policy",
+    "docs",
 ];
 
 impl Page {
