@@ -4,8 +4,9 @@ use std::{fs, path::Path};
 
 use tabletop::{
     controller::Sight,
-    core::{StepApp as _, TICKS_PER_SECOND},
+    core::{HeadCamera, StepApp as _, TICKS_PER_SECOND, Table},
     headless_app_with,
+    recorder::RecordingReader,
     replay::Replay,
 };
 
@@ -253,12 +254,25 @@ fn another_robot_shows_it() {
     let [scenario, demo] = [&scenario, &demo].map(|path| path.to_str().unwrap());
     let output = tabletop(&["run", scenario, "--record", demo]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    multiply(demo, &out, &["--count", "2", "--robot", PANDA]);
+    let options = ["--count", "2", "--robot", PANDA, "--camera", "0.5"];
+    multiply(demo, &out, &options);
     for number in ["0000", "0001"] {
         let joints = fs::read_to_string(out.join(number).join("joints.csv")).unwrap();
         assert!(joints.contains(",panda_joint1,"), "{joints:.200}");
     }
     replays_to_the_same_bytes(out.join("0000"));
+    // Its camera is moved, not Baxter's.
+    let recording = RecordingReader::open(&out.join("0000")).unwrap();
+    let moved = recording.header().camera.unwrap();
+    let usual = HeadCamera {
+        mount: None,
+        ..moved
+    };
+    let [moved_to, usual_at, baxters] =
+        [moved, usual, HeadCamera::default()].map(|it| it.pose(&Table::default()).location);
+    let way = (moved_to - usual_at).abs().max_element();
+    assert!(moved.mount.is_some() && way <= 0.501, "{way}");
+    assert!(usual_at.distance(baxters) > 1.0, "{usual_at}, {baxters}");
     // Those of another robot are others.
     let output = tabletop(&["multiply", demo, "--robot", "--out", out.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(2));

@@ -124,8 +124,13 @@ impl Collection {
         closed.map_err(CollectionError::io(&self.folder))
     }
 
+    /// The folder of the recording of a number in a collection in a folder.
+    pub fn place_in(folder: &Path, number: u64) -> PathBuf {
+        name(number).below(folder)
+    }
+
     fn place_of(&self, number: u64) -> PathBuf {
-        name(number).below(&self.folder)
+        Self::place_in(&self.folder, number)
     }
 
     fn is_empty(&self, folder: &Path) -> bool {

@@ -3,17 +3,21 @@
 //!
 //! The seed and the number of a demonstration alone decide it, so it does not matter which others were made, or where.
 
+mod camera_displacement;
 mod fingerprint;
 mod lasting;
 mod late;
+mod object_variation;
 mod operated;
 mod performance;
 mod variation;
 mod varied_beginning;
 mod way;
 
+pub use camera_displacement::CameraDisplacement;
 pub use fingerprint::Fingerprint;
-pub use variation::{Variation, with_colors_exchanged};
+pub use object_variation::{distractor, narrow, recolor, with_colors_exchanged};
+pub use variation::Variation;
 pub use varied_beginning::VariedBeginning;
 
 use std::{fmt, io, path::Path};
@@ -23,8 +27,8 @@ use serde_json::{Value, json};
 use tabletop_camera::Camera;
 use tabletop_controller::Sight;
 use tabletop_core::{
-    HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
-    Table, WriteCommand as _,
+    CameraCarrier, HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec,
+    StepApp as _, Table, WriteCommand as _,
 };
 use tabletop_kinematics::ModelError;
 use tabletop_planner::{Before, PlanFailure, RobotBody, imitate};
@@ -275,6 +279,13 @@ impl Multiplication {
         }
     }
 
+    /// What carries the head camera: the robot, or Baxter, which stands by while the hand demonstrates.
+    fn carrier(&self) -> CameraCarrier {
+        let robot = self.robot.as_ref();
+        let description = robot.and_then(|robot| robot.plugin.description.as_ref());
+        description.map_or_else(CameraCarrier::default, |it| (&it.layout).into())
+    }
+
     fn seed_of(&self, number: u64, attempt: u64) -> u64 {
         let mut mixed = self.seed;
         for part in [number, attempt] {
@@ -313,7 +324,13 @@ impl Multiplication {
         };
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         let binding = self.late.bind(&self.task, &self.requirements, &objects)?;
-        let mount = self.variation.mount(&scene.table, random);
+        let carrier = self.carrier();
+        let head = HeadCamera {
+            carrier,
+            ..HeadCamera::default()
+        };
+        let displacement = self.variation.displacement(random);
+        let mount = displacement.map(|displacement| displacement.of(head.pose(&scene.table)));
         let seed = random.bits();
         let light = self.variation.light(random);
         let beginning = VariedBeginning {
@@ -322,6 +339,7 @@ impl Multiplication {
             binding,
             mount,
             light,
+            carrier,
             seed,
         };
         let is_in_view = !self.variation.in_view

@@ -1,7 +1,7 @@
 //! Beginnings of demonstrations that are made from another.
 
 use tabletop_camera::Camera;
-use tabletop_core::{HeadCamera, Light, ObjectSpec, SceneSpec};
+use tabletop_core::{CameraCarrier, HeadCamera, Light, ObjectSpec, SceneSpec};
 use tabletop_geometry::Pose;
 use tabletop_task::Binding;
 
@@ -20,6 +20,8 @@ pub struct VariedBeginning {
     pub mount: Option<Pose>,
     /// The light in its pictures.
     pub light: Light,
+    /// What carries the head camera.
+    pub(super) carrier: CameraCarrier,
     /// The seed of the robot's search for paths.
     pub(super) seed: u64,
 }
@@ -28,6 +30,7 @@ impl VariedBeginning {
     /// The head camera.
     pub fn camera(&self) -> Camera {
         let head = HeadCamera {
+            carrier: self.carrier,
             mount: self.mount,
             light: self.light,
             ..HeadCamera::default()
