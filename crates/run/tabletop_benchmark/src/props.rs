@@ -54,7 +54,30 @@ impl PieceSize {
     }
 }
 
+/// A block like all others in a stock, but for its colour.
+pub(crate) const fn block(color: Rgb) -> PieceSpec {
+    PieceSpec {
+        form: Form::Block,
+        color,
+        size: PieceSize::Equal,
+    }
+}
+
+/// A ball like all others in a stock, but for its colour.
+pub(crate) const fn ball(color: Rgb) -> PieceSpec {
+    PieceSpec {
+        form: Form::Ball,
+        color,
+        size: PieceSize::Equal,
+    }
+}
+
 impl PieceSpec {
+    /// The same of another size.
+    pub const fn of_size(self, size: PieceSize) -> Self {
+        Self { size, ..self }
+    }
+
     /// The object with this number, standing at a place.
     pub fn object(self, number: usize, at: Vec3) -> ObjectSpec {
         let (length, color) = (self.size.length(number), self.color);
