@@ -1,9 +1,6 @@
 //! `tabletop benchmark`: what is understood of taught programs, and how often policies do tasks.
 
-use std::{
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
+use std::process::ExitCode;
 
 use crate::{
     benchmark::{
@@ -12,8 +9,6 @@ use crate::{
     },
     robot::RobotPlugin,
     run_episodes,
-    shipped::read_text,
-    storage::Storage,
 };
 use clap::{ArgGroup, Args};
 
@@ -48,9 +43,6 @@ pub(super) struct BenchmarkArgs {
     /// Print what was found for each program, too
     #[arg(long)]
     programs: bool,
-    /// Write the table into this file, between `<!-- benchmark -->` and `<!-- /benchmark -->`
-    #[arg(long, value_name = "FILE")]
-    docs: Option<PathBuf>,
     /// Number of programs or episodes at a time, from 1 to 256 [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
@@ -59,10 +51,7 @@ pub(super) struct BenchmarkArgs {
 }
 
 /// The options of taught programs.
-const OF_TEACHING: [&str; 5] = ["seed", "tables", "trials", "programs", "docs"];
-
-/// The marks around the table in a file.
-const MARKS: [&str; 2] = ["<!-- benchmark -->\n", "<!-- /benchmark -->"];
+const OF_TEACHING: [&str; 4] = ["seed", "tables", "trials", "programs"];
 
 /// Teaches programs by demonstrations, and says how many were understood; or judges a policy.
 pub(super) fn benchmark(args: &BenchmarkArgs) -> Result<ExitCode, Failure> {
@@ -70,7 +59,6 @@ pub(super) fn benchmark(args: &BenchmarkArgs) -> Result<ExitCode, Failure> {
     if args.judging.is_asked() {
         return args.judging.judge(&args.families, args.jobs);
     }
-    let page = args.docs.as_deref().map(Page::read).transpose()?;
     let lessons = args.lessons()?;
     let robot = args.trials.map(|_| TrialRobot::new(RobotPlugin::default()));
     let robot = robot.transpose().map_err(Failure::run)?;
@@ -96,13 +84,9 @@ pub(super) fn benchmark(args: &BenchmarkArgs) -> Result<ExitCode, Failure> {
             Ok(())
         },
     )?;
-    let table = table(&scores);
-    Output::tell(&table)?;
+    Output::tell(&table(&scores))?;
     if robot.is_some() {
         Output::tell(&trials_table(&trials))?;
-    }
-    if let Some(page) = page {
-        page.write(&table)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -168,41 +152,4 @@ fn report(score: &Score) -> String {
         .into_iter()
         .chain(results);
     lines.collect::<Vec<_>>().join("\n")
-}
-
-/// A file with a place for the table.
-struct Page {
-    path: PathBuf,
-    before: String,
-    after: String,
-}
-
-impl Page {
-    fn read(path: &Path) -> Result<Self, Failure> {
-        let wrong = |what: String| Failure::input(format!("{}: {what}", path.display()));
-        let text = read_text(path).map_err(|error| wrong(error.to_string()))?;
-        let place = text.split_once(MARKS[0]).and_then(|(before, rest)| {
-            let (_, after) = rest.split_once(MARKS[1])?;
-            Some((before.to_owned(), after.to_owned()))
-        });
-        let (before, after) = place.ok_or_else(|| {
-            wrong(format!(
-                "expected a line {} and one {}",
-                MARKS[0].trim_end(),
-                MARKS[1]
-            ))
-        })?;
-        Ok(Self {
-            path: path.to_owned(),
-            before,
-            after,
-        })
-    }
-
-    fn write(&self, table: &str) -> Result<(), Failure> {
-        let [begin, end] = MARKS;
-        let text = [&self.before, begin, table, end, &self.after].concat();
-        let written = Storage::default().replace(&self.path, text.as_bytes());
-        written.map_err(|error| Failure::at(&self.path, error))
-    }
 }
