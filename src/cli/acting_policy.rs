@@ -3,10 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use crate::{
-    core::{HeadCamera, ObjectSpec, RobotLayout, TICKS_PER_SECOND},
+    benchmark::AnswerDelay,
+    core::{HeadCamera, ObjectSpec, TICKS_PER_SECOND},
     imitation::AppStage,
     planner::{Before, Imitation, PlanningStage as _},
-    policy::{PicturePolicy, Policy, RemoteError, RemotePolicy, follow_actions, left_undone},
+    policy::{
+        DrivenTask, PicturePolicy, Policy, RemoteError, RemotePolicy, ThinkingTime, follow_actions,
+        left_undone,
+    },
     robot::RobotPlugin,
     task::{Binding, Task},
     wire::{MappedActions, PolicyAddress, PolicyMapping, RecordedExchanges},
@@ -14,7 +18,7 @@ use crate::{
 use bevy::prelude::*;
 use clap::Args;
 
-use super::{Failure, result_file::require_outside};
+use super::{Failure, range::NumberRange, result_file::require_outside, robot_options::layout_of};
 
 #[derive(Args)]
 pub(super) struct PolicyOptions {
@@ -28,7 +32,16 @@ pub(super) struct PolicyOptions {
     /// Write what the served policy is asked and answers into this new file; --policy FILE then does the same without the server
     #[arg(long, value_name = "FILE", requires = "policy")]
     exchanges: Option<PathBuf>,
+    /// Let the simulation run on while the policy thinks, for as long as it does; the robot stands still meanwhile, and no run repeats another [default: the
+    /// simulation waits]
+    #[arg(long, requires = "policy")]
+    realtime: bool,
+    /// Let each answer take this time, from 0 to 60000 ms, however long it really takes, so that runs repeat
+    #[arg(long, value_name = "MS", requires = "realtime", value_parser = DELAYS, allow_negative_numbers = true)]
+    delay: Option<u64>,
 }
+
+const DELAYS: NumberRange<u64> = NumberRange::whole(0, 60_000).of("ms");
 
 /// A policy that acts for the robot.
 pub(super) enum ActingPolicy {
@@ -78,6 +91,26 @@ impl PolicyOptions {
         self.mapping.as_deref()
     }
 
+    /// What the simulation does while the policy thinks.
+    pub fn thinking(&self) -> ThinkingTime {
+        match (self.realtime, self.delay) {
+            (false, _) => ThinkingTime::Waited,
+            (true, None) => ThinkingTime::Measured,
+            (true, Some(delay)) => {
+                ThinkingTime::Given((delay * u64::from(TICKS_PER_SECOND)).div_ceil(1000))
+            }
+        }
+    }
+
+    /// The time that an answer takes, if the simulation runs on meanwhile.
+    pub const fn delay(&self) -> Option<AnswerDelay> {
+        match (self.realtime, self.delay) {
+            (false, _) => None,
+            (true, None) => Some(AnswerDelay::Measured),
+            (true, Some(delay)) => Some(AnswerDelay::Ms(delay)),
+        }
+    }
+
     /// The policy that is to act for this robot, if one is.
     pub fn read(&self, robot: &RobotPlugin) -> Result<Option<ActingPolicy>, Failure> {
         let Some(policy) = &self.policy else {
@@ -117,17 +150,13 @@ impl PolicyOptions {
         policy: Result<RemotePolicy, RemoteError>,
         robot: &RobotPlugin,
     ) -> Result<ActingPolicy, Failure> {
-        let layout = match &robot.description {
-            Some(description) => &description.layout,
-            None => RobotLayout::baxter(),
-        };
         let failure = |error| match error {
             RemoteError::Wire(error) => Failure::run(error),
             RemoteError::Mapping(error) => Failure::input(error),
             RemoteError::Unmapped(_) => Failure::input(error),
         };
         let mut policy = policy.map_err(failure)?;
-        policy.check_for(layout).map_err(Failure::input)?;
+        policy.check_for(layout_of(robot)).map_err(Failure::input)?;
         if let Some(file) = &self.exchanges {
             require_outside(file, &[])?;
             policy.note_in(file).map_err(failure)?;
@@ -173,6 +202,7 @@ pub(super) fn words_of(task: &Task) -> String {
 /// Lets the robot do a task as a policy moves its joints.
 pub(super) fn follow_motions(
     policy: &RemotePolicy,
+    thinking: ThinkingTime,
     app: &mut App,
     task: &Task,
     binding: &Binding,
@@ -180,8 +210,13 @@ pub(super) fn follow_motions(
 ) -> Imitation {
     let before = Before::anything(AppStage::new(app).sight());
     let most = task.steps.len() as u64 * SECONDS_PER_STEP * u64::from(TICKS_PER_SECOND);
-    let prompt = words_of(task);
-    let followed = follow_actions(policy, app.world_mut(), &prompt, most, |now| {
+    let driven = DrivenTask {
+        prompt: &words_of(task),
+        most,
+        thinking,
+        displacement: None,
+    };
+    let followed = follow_actions(policy, app.world_mut(), &driven, |now| {
         left_undone(task, binding, objects, &before, now).is_none()
     });
     let failure = match followed {

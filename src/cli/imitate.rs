@@ -15,7 +15,7 @@ use crate::{
         Before, Doing, Execution, ExecutionPace, Following, Imitation, PlanningStage as _,
         RobotBody, imitate,
     },
-    policy::{PicturePolicy, ToldTask, follow_policy, left_undone},
+    policy::{PicturePolicy, ThinkingTime, ToldTask, follow_policy, left_undone},
     real::{BodyGuard, RealRobotPlugin},
     recorder::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
@@ -157,6 +157,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             exchanges_colors: args.exchange_colors,
             has_eyes: args.eyes,
             policy: policy.as_ref(),
+            thinking: args.policy.thinking(),
             real: &args.real,
             seed,
             folder,
@@ -222,6 +223,7 @@ struct Attempt<'a> {
     exchanges_colors: bool,
     has_eyes: bool,
     policy: Option<&'a ActingPolicy>,
+    thinking: ThinkingTime,
     real: &'a DrivenOptions,
     seed: Option<u64>,
     folder: Option<PathBuf>,
@@ -396,7 +398,7 @@ impl Attempt<'_> {
             }
         };
         if let Some(ActingPolicy::Motions(policy)) = self.policy {
-            return follow_motions(policy, app, task, binding, objects);
+            return follow_motions(policy, self.thinking, app, task, binding, objects);
         }
         let Some(policy) = self.picture_policy() else {
             return match self.has_eyes {
@@ -425,11 +427,29 @@ impl Attempt<'_> {
         let mut imitation = match self.has_eyes {
             true => {
                 let mut stage = SeeingStage::of_task(app, self.body, task, binding, objects);
-                follow_policy(policy, &mut stage, self.body, &told, most, seed, tell_move)
+                follow_policy(
+                    policy,
+                    self.thinking,
+                    &mut stage,
+                    self.body,
+                    &told,
+                    most,
+                    seed,
+                    tell_move,
+                )
             }
             false => {
                 let mut stage = AppStage::new(app);
-                follow_policy(policy, &mut stage, self.body, &told, most, seed, tell_move)
+                follow_policy(
+                    policy,
+                    self.thinking,
+                    &mut stage,
+                    self.body,
+                    &told,
+                    most,
+                    seed,
+                    tell_move,
+                )
             }
         };
         if imitation.failure.is_none() {

@@ -1,5 +1,8 @@
 //! `tabletop benchmark --policy`: how often a policy does tasks with fixed beginnings.
 
+mod judgement_page;
+mod policy_judge;
+
 use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
@@ -8,30 +11,20 @@ use std::{
 };
 
 use crate::{
-    Collection, TabletopSimPlugins,
+    Collection,
     benchmark::{
-        BENCHMARK_VERSION, BeginningError, JUDGED_TASKS, JudgedEpisode, JudgedTask, JudgementError,
-        JudgementFile, JudgementHeader, NamedTask, PolicyJudgement, TaskBeginning, paired_report,
-        report,
+        BENCHMARK_VERSION, JUDGED_TASKS, JudgedEpisode, JudgedTask, JudgementError, JudgementFile,
+        JudgementHeader, NamedTask, Perturbation, PolicyJudgement, paired_report, report,
     },
-    core::{
-        CameraCarrier, HeadCamera, RecordingCommand, RobotCommand, RobotLayout, RobotMode,
-        SceneCommand, SimTick, StepApp as _, TICKS_PER_SECOND, Table, WriteCommand as _,
-    },
-    headless_app_with,
-    imitation::AppStage,
+    core::{RobotMode, TICKS_PER_SECOND},
     multiplication::Fingerprint,
-    planner::{PlanFailure, PlanningStage as _, RobotBody},
-    policy::{ToldTask, follow_actions, follow_policy},
-    recorder::{RecorderPlugin, SessionHeader, UnrecordedPlugin},
     robot::RobotPlugin,
-    robot_body, run_episodes,
+    run_episodes,
     storage::{Symlinks, read_regular_file},
     wire::{WireMap, WireValue},
 };
-use bevy::prelude::*;
-use clap::Args;
-use serde_json::{Map, Value, json};
+use clap::{Args, builder::PossibleValuesParser};
+use serde_json::{Value, json};
 
 use super::{
     Failure, Output,
@@ -40,22 +33,21 @@ use super::{
     multiply::refused,
     progress::ProgressLine,
     range::NumberRange,
-    recorded,
     result_file::{ResultFile, ResultKind, require_outside},
-    robot_options::RobotChoice,
+    robot_options::{RobotChoice, layout_of},
     shard::ShardOption,
     wait::WaitOption,
 };
+use judgement_page::page_of;
+use policy_judge::PolicyJudge;
 
 const EPISODES: NumberRange<u64> = NumberRange::whole(1, 100_000);
 /// Most bytes of a policy's file.
 const MOST_BYTES: u64 = 1 << 32;
 /// The file with what a folder of recordings is made of.
 const MANIFEST: &str = "benchmark.json";
-/// Number of ticks after which a scene is at rest.
-const SETTLING: u64 = 30;
-/// The most moves of a policy that says which object is to be put where, for each step of a task.
-const MOVES: usize = 2;
+/// What stands for each perturbation.
+const EACH: &str = "all";
 
 #[derive(Args)]
 pub(super) struct JudgeOptions {
@@ -66,6 +58,9 @@ pub(super) struct JudgeOptions {
     /// Number of episodes of each task, from 1 to 100000
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = EPISODES, requires = "policy", allow_negative_numbers = true)]
     episodes: u64,
+    /// Do each episode once more with this perturbation, from the same beginning; `all` does it with each in turn
+    #[arg(long, value_name = "KIND", requires = "policy", value_delimiter = ',', value_parser = perturbations())]
+    perturb: Vec<String>,
     #[command(flatten)]
     shard: ShardOption,
     /// Write each episode into this file as soon as it is over, in a line of JSON, with all that is needed to repeat it; those that are there are not repeated
@@ -80,8 +75,17 @@ pub(super) struct JudgeOptions {
     /// Compare with another policy in the episodes of this file of --json that begin alike
     #[arg(long, value_name = "FILE", requires = "judged")]
     beside: Option<PathBuf>,
+    /// Write all results into this page, which a browser shows without network; with --record, films of a success and of failures of each task are in it
+    #[arg(long, value_name = "FILE", requires = "judged")]
+    html: Option<PathBuf>,
     #[command(flatten)]
     wait: WaitOption,
+}
+
+/// The names of perturbations, and of all of them.
+fn perturbations() -> PossibleValuesParser {
+    let names = Perturbation::ALL.map(Perturbation::name);
+    PossibleValuesParser::new(names.into_iter().chain([EACH]))
 }
 
 impl JudgeOptions {
@@ -97,6 +101,9 @@ impl JudgeOptions {
         if let Some(file) = &self.json {
             ResultFile::replacing(file, ResultKind::Json)?;
         }
+        let page = self.html.as_deref();
+        let page = page.map(|file| ResultFile::replacing(file, ResultKind::Page));
+        let page = page.transpose()?;
         let merged = PolicyJudgement::merged(&self.merge).map_err(Failure::input)?;
         let (judgement, times) = match (merged, self.policy.name()) {
             (None, Some(policy)) => self.judge_policy(policy, names, jobs)?,
@@ -109,6 +116,11 @@ impl JudgeOptions {
             let paired =
                 paired.map_err(|fault| Failure::input(format!("{}: {fault}", file.display())))?;
             text += &format!("\nBeside {}:\n\n{paired}", file.display());
+        }
+        if let Some(page) = page {
+            let beside = self.beside.as_deref().zip(other.as_ref());
+            let text = page_of(&judgement, beside, self.record.as_deref())?;
+            page.write(text.as_bytes())?;
         }
         Output::tell(&(text + &times))?;
         Ok(ExitCode::SUCCESS)
@@ -124,9 +136,12 @@ impl JudgeOptions {
                 "--merge takes all tasks of its files; name none",
             ));
         }
-        if let Some((task, episode)) = merged.missing() {
+        if let Some(episode) = merged
+            .missing()
+            .and_then(|it| merged.header.episode_name(it))
+        {
             return Err(Failure::input(format!(
-                "{task}, episode {episode}: it is in none of these files"
+                "{episode}: it is in none of these files"
             )));
         }
         if let Some(file) = &self.json {
@@ -165,16 +180,9 @@ impl JudgeOptions {
                 Some(opened.map_err(refused)?)
             }
         };
-        let table = Table::default();
-        let judge = PolicyJudge {
-            policy: &policy,
-            body: robot_body(&robot, &table).map_err(Failure::run)?,
-            carrier: CameraCarrier::from(layout(&robot)),
-            robot,
-            tasks: &tasks,
-            collection: collection.as_ref(),
-        };
-        let all = tasks.len() as u64 * self.episodes;
+        let thinking = self.policy.thinking();
+        let judge = PolicyJudge::new(&policy, thinking, robot, &header, collection.as_ref())?;
+        let all = header.round() * self.episodes;
         let numbers = self.shard.share_of(0..all);
         let missing: Vec<_> = numbers.filter(|number| !judgement.holds(*number)).collect();
         let mut progress = ProgressLine::new(missing.len() as u64, " episodes");
@@ -232,13 +240,23 @@ impl JudgeOptions {
         Ok(JudgementHeader {
             benchmark: BENCHMARK_VERSION.into(),
             program: env!("CARGO_PKG_VERSION").into(),
-            robot: layout(robot).name.clone(),
+            robot: layout_of(robot).name.clone(),
             dynamic: robot.mode == RobotMode::Dynamic,
             policy: name.display().to_string(),
             about,
             mapping,
+            delay: self.policy.delay(),
             tasks: tasks.iter().map(|task| NamedTask::from(*task)).collect(),
+            perturbations: self.perturbations(),
         })
+    }
+
+    fn perturbations(&self) -> Vec<Perturbation> {
+        let is_asked = |perturbation: &Perturbation| {
+            let mut names = self.perturb.iter();
+            names.any(|name| [EACH, perturbation.name()].contains(&name.as_str()))
+        };
+        Perturbation::ALL.into_iter().filter(is_asked).collect()
     }
 }
 
@@ -257,13 +275,6 @@ fn tasks_of(names: &[String]) -> Result<Vec<&'static JudgedTask>, Failure> {
     let is_chosen =
         |task: &&JudgedTask| names.is_empty() || names.iter().any(|name| is_of(task, name));
     Ok(JUDGED_TASKS.iter().filter(is_chosen).collect())
-}
-
-fn layout(robot: &RobotPlugin) -> &RobotLayout {
-    match &robot.description {
-        Some(description) => &description.layout,
-        None => RobotLayout::baxter(),
-    }
 }
 
 fn failure(error: JudgementError) -> Failure {
@@ -294,149 +305,4 @@ fn json_of(map: &WireMap) -> Value {
     };
     let entries = map.iter().map(|(key, it)| (key.clone(), value(it)));
     Value::Object(entries.collect())
-}
-
-/// Whoever carries out episodes.
-struct PolicyJudge<'a> {
-    policy: &'a ActingPolicy,
-    body: RobotBody,
-    carrier: CameraCarrier,
-    robot: RobotPlugin,
-    tasks: &'a [&'static JudgedTask],
-    collection: Option<&'a Collection>,
-}
-
-impl PolicyJudge<'_> {
-    /// The episode of a number: one of each task, then another one of each.
-    fn episode(&self, number: u64) -> Result<JudgedEpisode, Failure> {
-        let count = self.tasks.len() as u64;
-        let (task, episode) = (self.tasks[(number % count) as usize], number / count);
-        let beginning = task.begin(episode, &self.body, self.carrier);
-        let beginning = beginning.map_err(|error| match error {
-            BeginningError::NoRoom(..) => Failure::input(error),
-            BeginningError::Sentence(..) => Failure::run(error),
-        })?;
-        // A recording that is whole, and whose episode was not noted any more, stays.
-        let is_right = |header: &SessionHeader| {
-            header.settings.get("beginning") == Some(&json!(beginning.fingerprint))
-        };
-        let holds = self.collection.map(|it| it.holds(number, is_right));
-        let holds = holds.transpose().map_err(refused)?;
-        let recorded = self.collection.filter(|_| holds == Some(false));
-        let folder = recorded.map(|collection| collection.part(number));
-        let mut app = self.begin(task, episode, &beginning, folder);
-        if recorded.is_some() {
-            app.world_mut().write_command(RecordingCommand::Start);
-        }
-        // With and without a recording, as much time passes.
-        app.step(1);
-        let failure = self.act(&mut app, task, &beginning);
-        app.step(SETTLING);
-        let left = {
-            let stage = AppStage::new(&mut app);
-            match beginning.is_done(stage.sight()) {
-                true => Vec::new(),
-                false => beginning.left(stage.sight()),
-            }
-        };
-        // Before the tick in which the recording ends.
-        let ticks = app.world().resource::<SimTick>().0;
-        recorded::finish(&mut app)?;
-        if let Some(lost) = self.policy.served().and_then(|policy| policy.lost()) {
-            let task = task.name;
-            let fault = format!(
-                "{task}, episode {episode}: {lost}; the episodes before it are kept in --json, and the same command goes on"
-            );
-            return Err(Failure::run(fault));
-        }
-        if let Some(collection) = recorded {
-            collection.keep(number).map_err(refused)?;
-        }
-        let failure = failure
-            .as_ref()
-            .map(|failure| (failure.class(), failure.to_string()))
-            .or_else(|| (!left.is_empty()).then(|| self.shortfall(task)));
-        Ok(JudgedEpisode::new(
-            task, episode, &beginning, left, failure, ticks,
-        ))
-    }
-
-    /// What a policy failed by that did nothing wrong, and yet not all, as a class and in words.
-    fn shortfall(&self, task: &JudgedTask) -> (&'static str, String) {
-        match self.policy {
-            ActingPolicy::Motions(_) => ("late", format!("{} s were over", task.seconds)),
-            ActingPolicy::Places(_) | ActingPolicy::ServedPlaces(_) => {
-                ("premature", "the policy said that all was done".into())
-            }
-        }
-    }
-
-    /// A world that begins so, with the robot at the table, and recorded in a folder if there is one.
-    fn begin(
-        &self,
-        task: &JudgedTask,
-        episode: u64,
-        beginning: &TaskBeginning,
-        folder: Option<PathBuf>,
-    ) -> App {
-        let plugins = TabletopSimPlugins.build().set(self.robot.clone());
-        let plugins = match folder {
-            None => plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin),
-            Some(folder) => plugins.set(RecorderPlugin {
-                folder,
-                header: Map::from_iter([
-                    ("benchmark".into(), json!(BENCHMARK_VERSION)),
-                    ("task".into(), json!(task.name)),
-                    ("episode".into(), json!(episode)),
-                    ("beginning".into(), json!(beginning.fingerprint)),
-                ]),
-                ..default()
-            }),
-        };
-        let mut app = headless_app_with(plugins);
-        let world = app.world_mut();
-        self.policy.resize(&mut world.resource_mut::<HeadCamera>());
-        let scene = Box::new(beginning.scene.clone());
-        world.write_command(SceneCommand::Set(scene));
-        world.write_command(RobotCommand::Show(true));
-        app.step(SETTLING);
-        app
-    }
-
-    /// Lets the policy act until the task is done, it says so, or its time is over.
-    fn act(
-        &self,
-        app: &mut App,
-        task: &JudgedTask,
-        beginning: &TaskBeginning,
-    ) -> Option<PlanFailure> {
-        let words = task.sentences.replace('\n', " ");
-        let acting = match self.policy {
-            ActingPolicy::Motions(policy) => {
-                let most = task.seconds * u64::from(TICKS_PER_SECOND);
-                let followed = follow_actions(policy, app.world_mut(), &words, most, |now| {
-                    beginning.is_done(now)
-                });
-                return followed.err();
-            }
-            ActingPolicy::Places(policy) => &**policy,
-            ActingPolicy::ServedPlaces(policy) => &**policy,
-        };
-        let told = ToldTask {
-            words: &words,
-            objects: beginning.objects(),
-        };
-        let most = MOVES * beginning.steps;
-        let (mut stage, seed) = (AppStage::new(app), beginning.seed);
-        let followed = follow_policy(
-            acting,
-            &mut stage,
-            &self.body,
-            &told,
-            most,
-            seed,
-            |_, _, _| {},
-        );
-        followed.failure.map(|(_, failure)| failure)
-    }
 }

@@ -200,6 +200,126 @@ fn episodes_are_recorded_and_compared() {
 }
 
 #[test]
+fn perturbed_episodes_begin_like_their_twins() {
+    let (_, address) = dicing(u64::MAX);
+    let [plain, one, two, folder, page] = [
+        "judged_unperturbed",
+        "judged_perturbed",
+        "judged_perturbed_again",
+        "judged_perturbed_recorded",
+        "judged_perturbed.html",
+    ]
+    .map(place);
+    let perturb = ["--perturb", "words,light,words", "--perturb", "distractors"];
+    let table = judge(&address, &one, &[&perturb[..], &["--jobs", "1"]].concat());
+    let unperturbed = judge(&address, &plain, &[]);
+    let text = fs::read_to_string(&one).unwrap();
+    let json = |line: &str| serde_json::from_str::<serde_json::Value>(line).unwrap();
+    let lines: Vec<_> = text.lines().map(json).collect();
+    let kinds = serde_json::json!(["light", "distractors", "words"]);
+    assert_eq!(lines[0]["perturbations"], kinds);
+    assert_eq!(lines.len(), 1 + 9 * 4);
+    for twins in lines[1..].chunks(4) {
+        let same = ["task", "episode", "beginning", "seed"];
+        for key in same {
+            assert!(twins.iter().all(|it| it[key] == twins[0][key]), "{twins:?}");
+        }
+        let own: Vec<_> = twins.iter().map(|it| it["perturbation"].as_str()).collect();
+        assert_eq!(
+            own,
+            [None, Some("light"), Some("distractors"), Some("words")]
+        );
+        let told: Vec<_> = twins.iter().map(|it| it["words"].is_string()).collect();
+        assert_eq!(told, [false, false, false, true]);
+    }
+    // The others are those of a judgement without perturbations, to the byte.
+    let own = text.lines().skip(1).step_by(4);
+    let without = fs::read_to_string(&plain).unwrap();
+    assert!(own.eq(without.lines().skip(1)));
+    let rates = unperturbed.lines().take_while(|line| line.starts_with('|'));
+    assert!(rates.clone().count() > 4);
+    assert!(rates.eq(table.lines().take_while(|line| line.starts_with('|'))));
+    assert!(
+        table.contains("| none | 0 of 9 | 0 % | 0 to 30 % | | | |"),
+        "{table}"
+    );
+    assert!(
+        table.contains("| distractors | 0 of 9 | 0 % | 0 to 30 % | 0 | 0 | 1.000 |"),
+        "{table}"
+    );
+
+    // Recorded, with two jobs, and as a page with films.
+    let [folder_text, page_text] = [&folder, &page].map(|path| path.to_str().unwrap());
+    let more = ["--jobs", "2", "--record", folder_text, "--html", page_text];
+    assert_eq!(
+        judge(&address, &two, &[&perturb[..], &more].concat()),
+        table
+    );
+    assert_eq!(fs::read_to_string(&two).unwrap(), text);
+    for number in 0..4 {
+        replays_to_the_same_bytes(folder.join(format!("000{number}")));
+    }
+    let html = fs::read_to_string(&page).unwrap();
+    for part in [
+        "<h2>Perturbations by task</h2>",
+        "<td>none</td>",
+        "<b>stack, episode 0</b>",
+        "<img alt=\"Pictures of stack, episode 0\" src=\"data:image/png;base64,",
+    ] {
+        assert!(html.contains(part), "{part}");
+    }
+    // The same page comes from the file alone, without films.
+    let output = tabletop(&[
+        "benchmark",
+        "--merge",
+        two.to_str().unwrap(),
+        "--html",
+        page_text,
+    ]);
+    assert_eq!(stdout(&output).trim_end(), table, "{}", stderr(&output));
+    let html = fs::read_to_string(&page).unwrap();
+    assert!(html.contains("<h2>Failures</h2>") && !html.contains("<h2>Films</h2>"));
+}
+
+#[test]
+fn in_real_time_the_simulation_runs_on_until_the_answer() {
+    let (_, address) = dicing(u64::MAX);
+    let [waiting, delayed, again] =
+        ["judged_waiting", "judged_delayed", "judged_delayed_again"].map(place);
+    let ticks = |file: &Path| {
+        let text = fs::read_to_string(file).unwrap();
+        let episodes = text.lines().skip(1);
+        let ticks = episodes.map(|line| {
+            let json: serde_json::Value = serde_json::from_str(line).unwrap();
+            let premature = json["failure"] == "premature";
+            (premature, json["ticks"].as_u64().unwrap())
+        });
+        ticks.collect::<Vec<_>>()
+    };
+    let delay = ["--realtime", "--delay", "490"];
+    let table = judge(&address, &waiting, &[]);
+    assert_eq!(judge(&address, &delayed, &delay), table);
+    judge(&address, &again, &delay);
+    assert!(fs::read(&delayed).unwrap() == fs::read(&again).unwrap());
+    let text = fs::read_to_string(&delayed).unwrap();
+    assert!(
+        text.lines()
+            .next()
+            .unwrap()
+            .contains("\"delay\":{\"ms\":490}"),
+        "{text}"
+    );
+    // Who says that all is done is not waited for.
+    for ((premature, before), (_, after)) in ticks(&waiting).into_iter().zip(ticks(&delayed)) {
+        assert_eq!(after - before, if premature { 0 } else { 30 });
+    }
+    let measured = place("judged_measured");
+    judge(&address, &measured, &["--realtime"]);
+    let text = fs::read_to_string(&measured).unwrap();
+    assert!(text.contains("\"delay\":\"measured\""), "{text}");
+}
+
+#[test]
 fn what_cannot_be_judged_is_refused() {
     let (_, address) = dicing(u64::MAX);
     let file = place("judged_refused");
@@ -218,6 +338,17 @@ fn what_cannot_be_judged_is_refused() {
     refused(&["--episodes", "3"], "--policy");
     refused(&["--shard", "0/2"], "--policy");
     refused(&["--json", path], "--policy");
+    refused(&["--html", path], "--policy");
+    refused(
+        &["--policy", &address, "--perturb", "dark"],
+        "light, colors",
+    );
+    refused(&["--policy", &address, "--delay", "9"], "--realtime");
+    let elsewhere = ["--policy", &address, "--html", "Cargo.toml"];
+    refused(
+        &elsewhere,
+        "something else than a page of tabletop's is there",
+    );
     refused(&["--policy", "none.safetensors"], "none.safetensors");
     refused(&["--merge", "none.jsonl"], "none.jsonl");
     judge(&address, &file, &[]);

@@ -245,6 +245,27 @@ fn speeds_of_droid_turn_joints_and_the_same_answers_are_the_same_bytes() {
 }
 
 #[test]
+fn in_real_time_joints_stand_still_until_the_answer() {
+    let demo = record_shipped("red_on_blue", "served_delay");
+    let mut numbers = [0.0; 8];
+    numbers[0] = 0.1;
+    let (policy, address) = Scripted::serve(&numbers, 10, 5);
+    let simulated = |more: &[&str]| {
+        policy.seen.lock().unwrap().clear();
+        let (code, said) = imitate_with(&demo, &address, "droid", more);
+        assert_eq!(code, Some(1), "{said}");
+        let seconds = said.split_once(" s simulated").unwrap().0;
+        let seconds: f64 = seconds.rsplit(' ').next().unwrap().parse().unwrap();
+        (seconds, policy.states("observation/joint_position", 0))
+    };
+    let (waited, turned) = simulated(&[]);
+    let (delayed, turned_delayed) = simulated(&["--realtime", "--delay", "500"]);
+    // Four answers of 0.5 s each; the fifth is none.
+    assert!((delayed - waited - 2.0).abs() < 0.11, "{waited}, {delayed}");
+    assert_eq!(turned, turned_delayed);
+}
+
+#[test]
 fn recorded_exchanges_do_the_same_without_the_server() {
     let demo = record_shipped("red_on_blue", "served_exchanges");
     let exchanges = place("served_exchanges.wire");

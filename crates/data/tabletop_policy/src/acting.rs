@@ -15,12 +15,14 @@ use crate::{
     known_table::ToldTask,
     picture_policy::PicturePolicy,
     policy::{Decision, ObjectPlace},
+    thinking_time::ThinkingTime,
 };
 
 /// Lets a robot act as a policy decides: at most as many moves as given. The policy sees the picture of the head camera; the shape of what it takes, and
 /// where that is exactly, the stage tells. Of the task it sees what its mapping says. `seed` decides all random trials; `tell` is called before each move, with its number, the object and where it is put, in units.
 pub fn follow_policy(
     policy: &dyn PicturePolicy,
+    thinking: ThinkingTime,
     stage: &mut impl HeadCameraStage,
     body: &RobotBody,
     told: &ToldTask,
@@ -46,15 +48,20 @@ pub fn follow_policy(
             all.failure = Some((number, PlanFailure::Stopped));
             return all;
         };
-        let (pick, place) =
-            match policy.decide_told(&seen.picture, &seen.camera, told, stage.sight()) {
-                Ok(Decision::Move { pick, place }) => (pick, place),
-                Ok(Decision::Done) => return all,
-                Err(error) => {
-                    all.failure = Some((number, PlanFailure::Undecided(error.to_string())));
-                    return all;
-                }
-            };
+        let (decision, ticks) =
+            thinking.of(|| policy.decide_told(&seen.picture, &seen.camera, told, stage.sight()));
+        let (pick, place) = match decision {
+            Ok(Decision::Move { pick, place }) => (pick, place),
+            Ok(Decision::Done) => return all,
+            Err(error) => {
+                all.failure = Some((number, PlanFailure::Undecided(error.to_string())));
+                return all;
+            }
+        };
+        if (0..ticks).any(|_| stage.tick(&[]).is_err()) {
+            all.failure = Some((number, PlanFailure::Stopped));
+            return all;
+        }
         let Some((id, object)) = taken(stage.sight(), pick) else {
             all.failure = Some((number, PlanFailure::NothingThere));
             return all;

@@ -1,5 +1,4 @@
-//! Driving: a robot's joints and end effectors move as the actions of a served policy say. The simulation waits for each answer, so that the same answers lead to
-//! the same bits.
+//! Driving: a robot's joints and end effectors move as the actions of a served policy say.
 
 use bevy::prelude::*;
 use tabletop_controller::{Drives, Observer, Sight};
@@ -13,6 +12,7 @@ use tabletop_robot::{Articulation, base, reach_nearby};
 use tabletop_wire::{ActionColumn, MappedActions};
 
 use crate::{
+    driven_task::DrivenTask,
     remote_policy::RemotePolicy,
     robot_view::{joint_named, limb_named, observe},
 };
@@ -22,15 +22,14 @@ const SETTLED: u64 = 30;
 /// The fastest that a gripper's opening changes, in units/s.
 const GRIPPER_SPEED: f64 = 2.0;
 
-/// Lets a robot act as a served policy says until the task is done, which `is_done` tells, or until so many ticks have passed. The prompt is the task in words.
+/// Lets a robot act as a served policy says until the task is done, which `is_done` tells, or until its time is over.
 ///
 /// # Errors
 /// The policy does not answer, or says which object is to be put where instead of what is to be moved.
 pub fn follow_actions(
     policy: &RemotePolicy,
     world: &mut World,
-    prompt: &str,
-    most: u64,
+    task: &DrivenTask,
     mut is_done: impl FnMut(&Sight) -> bool,
 ) -> Result<(), PlanFailure> {
     let mapping = policy.mapping();
@@ -43,12 +42,14 @@ pub fn follow_actions(
     };
     let begin = |action: u64| action * u64::from(TICKS_PER_SECOND) / rate;
     let mut observer = Observer::default();
-    let (mut action, mut done_since) = (0, None);
+    let (mut action, mut thought, mut done_since) = (0, 0, None);
     loop {
-        let observation = observe(world, mapping, prompt);
+        let observation = observe(world, mapping, task);
         let observation = observation.map_err(|error| undecided(error.to_string()))?;
-        let chunk = policy.actions(&observation);
+        let (chunk, ticks) = task.thinking.of(|| policy.actions(&observation));
         let chunk = chunk.map_err(|error| undecided(error.to_string()))?;
+        step_world(world, ticks);
+        thought += ticks;
         for numbers in chunk.rows() {
             let goals = goals(world, columns, numbers);
             action += 1;
@@ -59,12 +60,12 @@ pub fn follow_actions(
                 }
                 step_world(world, 1);
             }
-            let now = begin(action);
+            let now = begin(action) + thought;
             done_since = match is_done(observer.look(world)) {
                 true => done_since.or(Some(now)),
                 false => None,
             };
-            if now >= most || done_since.is_some_and(|since| now - since >= SETTLED) {
+            if now >= task.most || done_since.is_some_and(|since| now - since >= SETTLED) {
                 return Ok(());
             }
         }

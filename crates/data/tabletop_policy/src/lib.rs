@@ -26,6 +26,7 @@ mod acting;
 mod adam;
 mod convolution;
 mod curriculum;
+mod driven_task;
 mod driving;
 mod error;
 mod evaluation;
@@ -48,11 +49,13 @@ mod table_view;
 mod tensor_file;
 #[cfg(test)]
 mod test_recording;
+mod thinking_time;
 mod training;
 mod unet;
 
 pub use acting::{follow_policy, left_undone};
 pub use curriculum::Curriculum;
+pub use driven_task::DrivenTask;
 pub use driving::follow_actions;
 pub use error::PolicyError;
 pub use evaluation::{Evaluation, PolicyFailure};
@@ -66,4 +69,5 @@ pub use picture_policy::PicturePolicy;
 pub use policy::{Decision, ObjectPlace, Policy};
 pub use remote_policy::{RemoteError, RemotePolicy};
 pub use served_policy::ServedPolicy;
+pub use thinking_time::ThinkingTime;
 pub use training::{Training, TrainingProgress};

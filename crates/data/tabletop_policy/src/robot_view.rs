@@ -5,6 +5,7 @@ use tabletop_camera::{Camera, CameraPlace, CameraSpec, Studio, StudioError};
 use tabletop_core::{
     HandCameras, HeadCamera, JointId, JointName, LimbId, LimbName, Robot, RobotLayout, Table,
 };
+use tabletop_episodes::multiplication::CameraDisplacement;
 use tabletop_geometry::{Pose, UNITS_PER_METER, turn_about_x};
 use tabletop_robot::base;
 use tabletop_wire::{
@@ -12,7 +13,10 @@ use tabletop_wire::{
     StateColumn, WireMap,
 };
 
-use crate::place_numbers::{OF_CAMERA, camera_numbers};
+use crate::{
+    driven_task::DrivenTask,
+    place_numbers::{OF_CAMERA, camera_numbers},
+};
 
 /// The names of a robot's parts, as mappings are checked.
 pub(crate) fn names_of(layout: &RobotLayout) -> RobotNames {
@@ -37,21 +41,21 @@ pub(crate) fn limb_named(layout: &RobotLayout, name: &str) -> Option<LimbId> {
     layout.find_limb(LimbName::new(name).ok()?)
 }
 
-/// The observation of the present world, with the task in words.
+/// The observation of the present world, with the task in words and cameras where they are displaced to.
 ///
 /// # Errors
 /// A camera has no picture.
 pub(crate) fn observe(
     world: &mut World,
     mapping: &PolicyMapping,
-    prompt: &str,
+    task: &DrivenTask,
 ) -> Result<WireMap, StudioError> {
     let mut observation = WireMap::new();
     let head = *world.resource::<HeadCamera>();
     let own = [head.width, head.height];
     let cameras = mapping.images.iter().map(|image| CameraSpec {
         name: image.key.clone(),
-        viewpoint: place_of(world, &image.camera),
+        viewpoint: place_of(world, &image.camera, task.displacement),
         size: Some(image.fit(own).inner),
         vertical_fov: fov_of(&image.camera),
     });
@@ -74,17 +78,23 @@ pub(crate) fn observe(
         observation.insert(state.key.clone(), array.into());
     }
     if let Some(key) = &mapping.prompt {
-        observation.insert(key.clone(), prompt.into());
+        observation.insert(key.clone(), task.prompt.into());
     }
     Ok(observation)
 }
 
-fn place_of(world: &World, camera: &MappedCamera) -> CameraPlace {
+fn place_of(
+    world: &World,
+    camera: &MappedCamera,
+    displacement: Option<CameraDisplacement>,
+) -> CameraPlace {
     match camera {
         MappedCamera::Head => CameraPlace::Head,
         MappedCamera::Hand(name) => CameraPlace::Hand(name.clone()),
         MappedCamera::Standing { at, looks_at, .. } => {
-            CameraPlace::Standing(Pose::looking_at(Vec3::from(*at), Vec3::from(*looks_at)))
+            let usual = Pose::looking_at(Vec3::from(*at), Vec3::from(*looks_at));
+            let displaced = displacement.map(|displacement| displacement.of(usual));
+            CameraPlace::Standing(displaced.unwrap_or(usual))
         }
         MappedCamera::OnLimb { limb, at, tilt, .. } => {
             let limb = limb_named(world.resource::<RobotLayout>(), limb);

@@ -48,7 +48,7 @@ pub fn overview_page(rows: &[OverviewRow]) -> String {
 pub const GENERATOR: &str = "<meta name=\"generator\" content=\"tabletop\">";
 
 /// A page without anything from elsewhere. `data` is what the player plays.
-fn page(title: &str, body: &str, data: Option<&str>) -> String {
+pub(crate) fn page(title: &str, body: &str, data: Option<&str>) -> String {
     let script = data.map_or_else(String::new, |data| {
         format!(
             "<script type=\"application/json\" id=\"frames\">{data}</script>\n<script>{PLAYER}</script>\n"

@@ -17,9 +17,9 @@ mod table;
 mod trials;
 
 pub use judging::{
-    BENCHMARK_VERSION, BeginningError, JUDGED_TASKS, JudgedEpisode, JudgedTask, JudgementError,
-    JudgementFile, JudgementHeader, NamedTask, PairedOutcomes, PolicyJudgement, SuccessRate,
-    TaskBeginning, paired_report, report,
+    AnswerDelay, BENCHMARK_VERSION, BeginningError, FailureGroup, JUDGED_TASKS, JudgedEpisode,
+    JudgedTask, JudgementError, JudgementFile, JudgementHeader, NamedTask, PairedOutcomes,
+    Perturbation, PolicyJudgement, SuccessRate, TaskBeginning, paired_report, percent, report,
 };
 pub use lesson::BenchmarkLesson;
 pub use lessons::LESSONS;

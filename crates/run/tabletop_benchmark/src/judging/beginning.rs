@@ -2,30 +2,48 @@
 
 use tabletop_camera::Camera;
 use tabletop_controller::Sight;
-use tabletop_core::{CameraCarrier, HeadCamera, ObjectSpec, Random, SceneSpec};
-use tabletop_episodes::{StillScene, imitation::scattered, multiplication::Fingerprint};
+use tabletop_core::{CameraCarrier, HeadCamera, Light, ObjectSpec, Random, SceneSpec, Table};
+use tabletop_episodes::{
+    StillScene,
+    imitation::scattered,
+    multiplication::{CameraDisplacement, Fingerprint},
+};
 use tabletop_planner::RobotBody;
-use tabletop_program::{Impossible, NextStep, ProgramRun, SentenceError, TableScene, TaskProgram};
+use tabletop_program::{
+    ConcreteStep, Impossible, NextStep, ProgramRun, SentenceError, TableScene, TaskProgram,
+};
 use tabletop_scene::{IdAllocator, assemble};
 
-use super::{BENCHMARK_VERSION, tasks::JudgedTask};
+use super::{BENCHMARK_VERSION, Perturbation, tasks::JudgedTask};
 
 /// How often everything is put at random places until the robot can do the task.
-const DRAWS: usize = 50;
+pub(super) const DRAWS: usize = 50;
 
 /// The beginning of an episode of a task.
 #[derive(Clone, Debug)]
 pub struct TaskBeginning {
+    /// The task.
+    pub task: JudgedTask,
+    /// The number of the episode, from 0.
+    pub episode: u64,
+    /// In what it differs from the task's own.
+    pub perturbation: Option<Perturbation>,
     /// Where everything is.
     pub scene: SceneSpec,
+    /// The task in the words in which a policy is told it.
+    pub words: String,
+    /// The light in all pictures.
+    pub light: Light,
+    /// How far cameras are from their usual places.
+    pub displacement: Option<CameraDisplacement>,
     /// The seed that has decided it, and decides the search for paths.
     pub seed: u64,
-    /// The same for beginnings that are the same to the bit.
+    /// The same for beginnings that are the same to the bit, and for those that differ in perturbations alone.
     pub fingerprint: String,
-    /// Number of steps of the task.
-    pub steps: usize,
-    program: TaskProgram,
-    table: TableScene,
+    /// The steps of the task.
+    pub(super) steps: Vec<ConcreteStep>,
+    pub(super) program: TaskProgram,
+    pub(super) table: TableScene,
 }
 
 /// Why an episode has no beginning.
@@ -39,6 +57,9 @@ pub enum BeginningError {
         "{0}, episode {1}: there is no room for everything where the robot reaches it and sees it"
     )]
     NoRoom(&'static str, u64),
+    /// The robot reaches or sees too little in spite of the perturbation.
+    #[error("{0}, episode {1}: it cannot be perturbed by {2} so that the robot can do it")]
+    Unperturbed(&'static str, u64, Perturbation),
 }
 
 impl JudgedTask {
@@ -55,26 +76,23 @@ impl JudgedTask {
         let program = self.program();
         let program = program.map_err(|error| BeginningError::Sentence(self.name, error))?;
         let row = self.scene();
-        let head = HeadCamera {
-            carrier,
-            ..HeadCamera::default()
-        };
-        let camera = Camera::of_head(&head, &row.table);
+        let camera = head_camera(carrier, None, &row.table);
         let name = [BENCHMARK_VERSION, self.name, &episode.to_string()].join(" ");
         let mut random = Random::new(Fingerprint::EMPTY.and(name.as_bytes()).number());
         let mut draws = (0..DRAWS).filter_map(|_| {
             let seed = random.bits();
             let scene = scattered(&row, &[], Some(body), seed)?;
-            let assembly = assemble(&scene, &mut IdAllocator::default());
-            let table = TableScene {
-                table: scene.table,
-                objects: assembly.objects,
-                joints: assembly.joints,
-            };
+            let table = table_of(&scene);
             let steps = possible_steps(&program, &table, body, camera)?;
             Some(TaskBeginning {
+                task: *self,
+                episode,
+                perturbation: None,
                 fingerprint: fingerprint(&table.objects).to_string(),
                 scene,
+                words: self.words(),
+                light: Light::default(),
+                displacement: None,
                 seed,
                 steps,
                 program: program.clone(),
@@ -86,13 +104,37 @@ impl JudgedTask {
     }
 }
 
-/// The number of steps of a program, if there are any, the robot reaches where they take and put things, and its head sees that.
-fn possible_steps(
+/// The table of a scene, with the objects on it.
+pub(super) fn table_of(scene: &SceneSpec) -> TableScene {
+    let assembly = assemble(scene, &mut IdAllocator::default());
+    TableScene {
+        table: scene.table,
+        objects: assembly.objects,
+        joints: assembly.joints,
+    }
+}
+
+/// The head camera before a table.
+pub(super) fn head_camera(
+    carrier: CameraCarrier,
+    displacement: Option<CameraDisplacement>,
+    table: &Table,
+) -> Camera {
+    let head = HeadCamera {
+        carrier,
+        ..HeadCamera::default()
+    };
+    let mount = displacement.map(|displacement| displacement.of(head.pose(table)));
+    Camera::of_head(&HeadCamera { mount, ..head }, table)
+}
+
+/// The steps of a program, if there are any, the robot reaches where they take and put things, and its head sees that.
+pub(super) fn possible_steps(
     program: &TaskProgram,
     table: &TableScene,
     body: &RobotBody,
     camera: Camera,
-) -> Option<usize> {
+) -> Option<Vec<ConcreteStep>> {
     let (steps, _, failure) = ProgramRun::rehearsed(program, table);
     if steps.is_empty() || failure.is_some() {
         return None;
@@ -110,7 +152,7 @@ fn possible_steps(
         }
         now = now.after(step);
     }
-    Some(steps.len())
+    Some(steps)
 }
 
 /// A step in words without its place on the table, which is another one in each episode.
@@ -132,6 +174,11 @@ fn fingerprint(objects: &[ObjectSpec]) -> Fingerprint {
 }
 
 impl TaskBeginning {
+    /// Number of steps of the task.
+    pub const fn step_count(&self) -> usize {
+        self.steps.len()
+    }
+
     /// The objects on the table.
     pub fn objects(&self) -> &[ObjectSpec] {
         &self.table.objects

@@ -137,7 +137,9 @@ fn first_difference(one: &JudgementHeader, other: &JudgementHeader) -> Option<&'
         policy,
         about,
         mapping,
+        delay,
         tasks,
+        perturbations,
     } = one;
     let fields = [
         ("benchmark", *benchmark == other.benchmark),
@@ -147,7 +149,12 @@ fn first_difference(one: &JudgementHeader, other: &JudgementHeader) -> Option<&'
         ("policy", *policy == other.policy),
         ("server", *about == other.about),
         ("mapping", *mapping == other.mapping),
+        ("delay", *delay == other.delay),
         ("list of tasks", *tasks == other.tasks),
+        (
+            "list of perturbations",
+            *perturbations == other.perturbations,
+        ),
     ];
     let differing = fields.into_iter().find(|(_, is_same)| !is_same);
     differing.map(|(field, _)| field)
@@ -239,7 +246,7 @@ mod tests {
     use tabletop_storage::TemporaryFolder;
 
     use super::*;
-    use crate::judging::{BENCHMARK_VERSION, JUDGED_TASKS};
+    use crate::judging::{BENCHMARK_VERSION, JUDGED_TASKS, Perturbation};
 
     fn header(policy: &str) -> JudgementHeader {
         JudgementHeader {
@@ -250,7 +257,9 @@ mod tests {
             policy: policy.into(),
             about: json!({"name": "a"}),
             mapping: None,
+            delay: None,
             tasks: JUDGED_TASKS[..2].iter().map(Into::into).collect(),
+            perturbations: Vec::new(),
         }
     }
 
@@ -258,6 +267,8 @@ mod tests {
         JudgedEpisode {
             task: JUDGED_TASKS[(number % 2) as usize].name.into(),
             episode: number / 2,
+            perturbation: None,
+            words: None,
             seed: number,
             beginning: format!("{number:x}"),
             done,
@@ -310,17 +321,52 @@ mod tests {
         assert_eq!(merged, whole);
         assert_eq!(merged.missing(), None);
         let one = PolicyJudgement::merged(&shares[..1]).unwrap().unwrap();
-        assert_eq!(one.missing(), Some(("stack-among-others", 0)));
-        assert_eq!(
-            judge(&place("few"), 0..3).missing(),
-            Some(("stack-among-others", 1))
-        );
+        assert_eq!(one.missing(), Some(1));
+        assert_eq!(judge(&place("few"), 0..3).missing(), Some(3));
         // One after the other into the same file.
         judge(&place("same"), [1, 3, 5]);
         judge(&place("same"), [0, 2, 4]);
         assert_eq!(
             fs::read(place("same")).unwrap(),
             fs::read(place("whole")).unwrap()
+        );
+    }
+
+    #[test]
+    fn each_perturbation_has_a_place_beside_the_beginning_of_its_twin() {
+        let header = JudgementHeader {
+            perturbations: vec![Perturbation::Light, Perturbation::Words],
+            ..header("a")
+        };
+        let mut judgement = PolicyJudgement::new(header.clone());
+        for number in (0..12).rev() {
+            let (task, round, perturbation) = header.episode(number).unwrap();
+            let one = JudgedEpisode {
+                task: task.name.clone(),
+                episode: round,
+                perturbation,
+                done: perturbation != Some(Perturbation::Words),
+                ..episode(number, true)
+            };
+            judgement.add(one.clone()).unwrap();
+            assert_eq!(judgement.episodes()[&number], one);
+        }
+        assert_eq!((header.round(), judgement.missing()), (6, None));
+        let twins = judgement.twins(Perturbation::Words);
+        let done = |[one, other]: &[&JudgedEpisode; 2]| {
+            assert_eq!((&one.task, one.episode), (&other.task, other.episode));
+            [one.done, other.done]
+        };
+        let done: Vec<_> = twins.iter().map(done).collect();
+        assert_eq!(done, [[true, false]; 4]);
+        let strange = JudgedEpisode {
+            perturbation: Some(Perturbation::Sizes),
+            ..episode(0, true)
+        };
+        let refusal = judgement.add(strange).unwrap_err();
+        assert!(
+            refusal.contains("no task \"stack\" with \"sizes\""),
+            "{refusal}"
         );
     }
 
@@ -390,7 +436,7 @@ mod tests {
         other.add(episode(1, false)).unwrap();
         assert_eq!(
             one.beside(&other),
-            Ok(vec![("stack-among-others", [true, false])])
+            Ok(vec![[&episode(1, true), &episode(1, false)]])
         );
         other
             .add(JudgedEpisode {

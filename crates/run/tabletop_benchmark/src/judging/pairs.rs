@@ -2,6 +2,8 @@
 
 use std::f64::consts::LN_2;
 
+use super::JudgedEpisode;
+
 /// What two policies came to on the same beginnings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PairedOutcomes {
@@ -17,7 +19,15 @@ pub struct PairedOutcomes {
 
 impl PairedOutcomes {
     /// Those of these pairs.
-    pub fn of(pairs: impl IntoIterator<Item = [bool; 2]>) -> Self {
+    pub fn of<'a>(pairs: impl IntoIterator<Item = &'a [&'a JudgedEpisode; 2]>) -> Self {
+        Self::counted(
+            pairs
+                .into_iter()
+                .map(|pair| pair.map(|episode| episode.done)),
+        )
+    }
+
+    fn counted(pairs: impl IntoIterator<Item = [bool; 2]>) -> Self {
         let mut outcomes = Self::default();
         for pair in pairs {
             let count = match pair {
@@ -87,7 +97,7 @@ mod tests {
     #[test]
     fn pairs_are_counted() {
         let pairs = [[true, true], [true, false], [true, false], [false, false]];
-        let outcomes = PairedOutcomes::of(pairs);
+        let outcomes = PairedOutcomes::counted(pairs);
         let counts = [
             outcomes.both,
             outcomes.first,

@@ -1,61 +1,66 @@
 //! Judgements in words.
 
-use std::{collections::BTreeMap, fmt::Write as _};
+use std::fmt::Write as _;
 
-use super::{PairedOutcomes, PolicyJudgement, SuccessRate};
+use super::{PairedOutcomes, PolicyJudgement, SuccessRate, percent};
 
-/// How often each task was done, with the interval of its true rate, and where the others failed.
+/// How often each task was done, with the interval of its true rate; with perturbations, how often then; and where the others failed.
 pub fn report(judgement: &PolicyJudgement) -> String {
-    let episodes = judgement.episodes();
-    let rate = |name: Option<&str>| {
-        let own = episodes.values();
-        let own = own.filter(|episode| name.is_none_or(|name| episode.task == name));
-        SuccessRate::of(own.map(|episode| episode.done))
-    };
     let mut text = String::from("| task | done | rate | 95 % interval |\n|---|---|---|---|\n");
-    let tasks = &judgement.header.tasks;
-    let rows = tasks
-        .iter()
-        .map(|task| (task.name.as_str(), Some(task.name.as_str())));
-    for (title, name) in rows.chain([("all", None)]) {
-        let rate = rate(name);
-        let [low, high] = rate.interval().map(percent);
-        let (SuccessRate { done, tried }, share) = (rate, percent(rate.share()));
+    for (title, task) in judgement.task_titles() {
+        let cells = rate_cells(judgement.rate(task, None));
+        let _infallible = writeln!(text, "| {title} | {cells} |");
+    }
+    text + &perturbations(judgement) + &failures(judgement)
+}
+
+/// How often something was done, the share, and the interval of the true one.
+fn rate_cells(rate: SuccessRate) -> String {
+    let [low, high] = rate.interval().map(percent);
+    let (SuccessRate { done, tried }, share) = (rate, percent(rate.share()));
+    format!("{done} of {tried} | {share} % | {low} to {high} %")
+}
+
+/// How often all tasks were done with each perturbation, beside the episodes that begin alike.
+fn perturbations(judgement: &PolicyJudgement) -> String {
+    if judgement.header.perturbations.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from(
+        "\n| perturbation | done | rate | 95 % interval | only without | only with | p |\n|---|---|---|---|---|---|---|\n",
+    );
+    let unperturbed = rate_cells(judgement.rate(None, None));
+    let _infallible = writeln!(text, "| none | {unperturbed} | | | |");
+    for perturbation in &judgement.header.perturbations {
+        let cells = rate_cells(judgement.rate(None, Some(*perturbation)));
+        let outcomes = PairedOutcomes::of(&judgement.twins(*perturbation));
+        let PairedOutcomes { first, second, .. } = outcomes;
+        let significance = outcomes.significance();
         let _infallible = writeln!(
             text,
-            "| {title} | {done} of {tried} | {share} % | {low} to {high} % |"
+            "| {perturbation} | {cells} | {first} | {second} | {significance:.3} |"
         );
     }
-    text + &failures(judgement)
+    text + "\n"
 }
 
 /// The failures of each task by the first step that was not done.
 fn failures(judgement: &PolicyJudgement) -> String {
     let mut text = String::new();
-    for task in &judgement.header.tasks {
-        let mut groups = BTreeMap::<(usize, &str), (BTreeMap<&str, usize>, Vec<String>)>::new();
-        let own = judgement.episodes().values();
-        for episode in own.filter(|episode| episode.task == task.name && !episode.done) {
-            let step = episode
-                .left
-                .as_deref()
-                .unwrap_or("It was done, but not known to be.");
-            let (classes, numbers) = groups.entry((episode.steps_done, step)).or_default();
-            let class = episode.failure.as_deref().unwrap_or("not done");
-            *classes.entry(class).or_default() += 1;
-            numbers.push(episode.episode.to_string());
-        }
-        for ((done, step), (classes, numbers)) in groups {
-            let classes = classes
-                .iter()
-                .map(|(class, count)| format!("{count} {class}"));
-            let classes = classes.collect::<Vec<_>>().join(", ");
-            let (name, numbers) = (&task.name, numbers.join(", "));
-            let _infallible = writeln!(
-                text,
-                "{name}, after {done} steps: {step} {classes}; episodes {numbers}"
-            );
-        }
+    for group in judgement.failures() {
+        let numbers = group.episodes.iter();
+        let numbers = numbers.map(|(_, episode)| episode.episode.to_string());
+        let numbers = numbers.collect::<Vec<_>>().join(", ");
+        let perturbed = match group.perturbation {
+            None => String::new(),
+            Some(perturbation) => format!(", {perturbation}"),
+        };
+        let (task, done, step, reasons) =
+            (group.task, group.steps_done, group.step, group.reasons());
+        let _infallible = writeln!(
+            text,
+            "{task}{perturbed}, after {done} steps: {step} {reasons}; episodes {numbers}"
+        );
     }
     text
 }
@@ -68,22 +73,10 @@ pub fn paired_report(
     judgement: &PolicyJudgement,
     other: &PolicyJudgement,
 ) -> Result<String, String> {
-    let pairs = judgement.beside(other)?;
     let mut text = String::from(
         "| task | both | only this | only the other | neither | p |\n|---|---|---|---|---|---|\n",
     );
-    let tasks = &judgement.header.tasks;
-    let rows = tasks
-        .iter()
-        .map(|task| (task.name.as_str(), Some(task.name.as_str())));
-    for (title, name) in rows.chain([("all", None)]) {
-        let own = pairs
-            .iter()
-            .filter(|(task, _)| name.is_none_or(|name| name == *task));
-        let outcomes = PairedOutcomes::of(own.map(|(_, pair)| *pair));
-        if outcomes.count() == 0 {
-            continue;
-        }
+    for (title, outcomes) in judgement.outcomes_beside(other)? {
         let PairedOutcomes {
             both,
             first,
@@ -97,9 +90,4 @@ pub fn paired_report(
         );
     }
     Ok(text)
-}
-
-/// A share as a number of percents.
-fn percent(share: f64) -> String {
-    format!("{:.0}", share * 100.0)
 }

@@ -14,6 +14,8 @@ pub struct JudgedTask {
     pub name: &'static str,
     /// What is to be done, in sentences of task programs. A policy is told these, and they decide whether it is done.
     pub sentences: &'static str,
+    /// The same in other words.
+    pub(super) other_words: &'static [&'static str],
     things: &'static [TaskThing],
     /// Simulated time in which a policy that moves joints must have done it, in s.
     pub seconds: u64,
@@ -54,54 +56,92 @@ pub static JUDGED_TASKS: [JudgedTask; 9] = [
     JudgedTask {
         name: "stack",
         sentences: "Put the red block on the blue block.",
+        other_words: &[
+            "Lay the red block onto the blue block.",
+            "Place the red cube on top of the blue cube.",
+            "Set the red brick on the blue brick.",
+        ],
         things: &[RED, BLUE],
         seconds: 30,
     },
     JudgedTask {
         name: "stack-among-others",
         sentences: "Put the red block on the blue block.",
+        other_words: &[
+            "Lay the red block onto the blue block.",
+            "Place the red cube on top of the blue cube.",
+            "Set the red brick on the blue brick.",
+        ],
         things: &[RED, BLUE, GREEN, YELLOW],
         seconds: 30,
     },
     JudgedTask {
         name: "tower",
         sentences: "Put the red block on the blue block.\nPut the green block on the red block.",
+        other_words: &[
+            "Place the red cube on the blue cube. Place the green cube on the red cube.",
+            "Set the red brick on the blue brick. Set the green brick on the red brick.",
+        ],
         things: &[RED, BLUE, GREEN],
         seconds: 60,
     },
     JudgedTask {
         name: "take-down",
         sentences: "Put the red block on the table.",
+        other_words: &[
+            "Place the red cube on the table.",
+            "Set the red brick on the table.",
+        ],
         things: &[BLUE, TaskThing::Upper("Red", Rgb::RED)],
         seconds: 30,
     },
     JudgedTask {
         name: "other-tower",
         sentences: "Put the blue block on the green block.",
+        other_words: &[
+            "Place the blue cube on the green cube.",
+            "Set the blue brick on top of the green brick.",
+        ],
         things: &[BLUE, TaskThing::Upper("Red", Rgb::RED), GREEN],
         seconds: 60,
     },
     JudgedTask {
         name: "plate",
         sentences: "Put the green block on the plate.",
+        other_words: &[
+            "Place the green cube on the dish.",
+            "Set the green brick on the plate.",
+        ],
         things: &[GREEN, RED, TaskThing::Plate],
         seconds: 30,
     },
     JudgedTask {
         name: "beside",
         sentences: "Put the red block to the left of the blue block.",
+        other_words: &[
+            "Place the red cube to the left of the blue cube.",
+            "Put the red brick left of the blue brick.",
+        ],
         things: &[RED, BLUE],
         seconds: 30,
     },
     JudgedTask {
         name: "box",
         sentences: "Put the red block into the box.",
+        other_words: &[
+            "Place the red cube in the container.",
+            "Drop the red block into the box.",
+        ],
         things: &[RED, GREEN, TaskThing::Box],
         seconds: 30,
     },
     JudgedTask {
         name: "sort",
         sentences: "Put every red block into the box.",
+        other_words: &[
+            "Place all red cubes in the container.",
+            "Put all the red bricks into the box.",
+        ],
         things: &[RED, ANOTHER_RED, GREEN, TaskThing::Box],
         seconds: 60,
     },
@@ -119,6 +159,11 @@ impl JudgedTask {
     /// Its sentences are none.
     pub fn program(&self) -> Result<TaskProgram, SentenceError> {
         self.sentences.parse()
+    }
+
+    /// What is to be done, in one line.
+    pub fn words(&self) -> String {
+        self.sentences.replace('\n', " ")
     }
 
     /// Its things in a row.
@@ -162,7 +207,14 @@ mod tests {
         let names: BTreeSet<_> = JUDGED_TASKS.iter().map(|task| task.name).collect();
         assert_eq!(names.len(), JUDGED_TASKS.len());
         for task in &JUDGED_TASKS {
-            assert_eq!(task.program().unwrap().to_string(), task.sentences);
+            let program = task.program().unwrap();
+            assert_eq!(program.to_string(), task.sentences);
+            assert!(task.other_words.len() > 1, "{}", task.name);
+            for other in task.other_words {
+                assert_ne!(*other, task.words());
+                let told: TaskProgram = other.parse().unwrap();
+                assert_eq!(told, program, "{other}");
+            }
         }
     }
 }
