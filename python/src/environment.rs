@@ -1,12 +1,13 @@
 //! Single environments.
 
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
-use pyo3::prelude::*;
+use pyo3::{prelude::*, types::PyDict};
 use tabletop::{core::RobotLayout, environment};
 
 use crate::{
-    camera::{depth, rgb},
+    camera::{camera, depth, rgb},
     error::{raise, refuse},
+    joints::joints,
     options::Options,
 };
 
@@ -65,6 +66,28 @@ impl Environment {
         Ok((rgb(py, picture)?, depth(py, picture)?))
     }
 
+    /// Names and colours of the pictures of these cameras, as options name them, all of this size.
+    fn shoot<'py>(
+        &mut self,
+        py: Python<'py>,
+        cameras: Vec<String>,
+        size: (u32, u32),
+    ) -> PyResult<Vec<(String, Bound<'py, PyArray3<u8>>)>> {
+        let cameras = cameras.iter().map(|text| camera(text, size));
+        let cameras = cameras.collect::<PyResult<Vec<_>>>()?;
+        let world = self.0.table_world();
+        let shots = py.detach(|| world.shoot(&cameras)).map_err(raise)?;
+        let pictures = cameras.iter().zip(shots);
+        pictures
+            .map(|(camera, shot)| Ok((camera.name.clone(), rgb(py, &shot.picture)?)))
+            .collect()
+    }
+
+    /// Names, positions, velocities, torques, least and greatest positions of the joints.
+    fn joints<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        joints(py, self.0.table_world().world())
+    }
+
     /// For each check of the goal its failure, if it fails, and the two places that it compares.
     fn verdicts(&self) -> Vec<(Option<String>, [f32; 3], [f32; 3])> {
         let verdicts = self.0.verdicts();
@@ -103,6 +126,18 @@ impl Environment {
             .resource::<RobotLayout>()
             .clone();
         self.0.state_layout().names(&layout)
+    }
+
+    /// The joints that the numbers of the actions `joint_velocity` and `joint_position` move: those of the limbs, then the grippers.
+    #[getter]
+    fn driven_joints(&mut self) -> Vec<String> {
+        let layout = self.0.table_world().world().resource::<RobotLayout>();
+        let of_limbs = layout.limbs.iter().flat_map(|limb| limb.joints.iter());
+        let grippers = layout.limbs.iter().map(|limb| &limb.gripper.joint);
+        let driven = of_limbs.chain(grippers);
+        driven
+            .map(|&joint| layout.joint(joint).name.to_string())
+            .collect()
     }
 
     /// The number of the robot's numbers in a state.

@@ -3,6 +3,7 @@
 mod camera;
 mod environment;
 mod error;
+mod joints;
 mod options;
 mod policy;
 mod vector;

@@ -18,6 +18,7 @@ use tabletop::{
 use crate::{
     camera::{camera, depth, rgb, things},
     error::{raise, refuse},
+    joints::joints,
 };
 
 /// A world; `tabletop.World` is made of it.
@@ -133,22 +134,7 @@ impl World {
 
     /// Names, positions, velocities, torques, least and greatest positions of the joints.
     fn joints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let world = self.0.world();
-        let layout = world.resource::<RobotLayout>();
-        let robot = world.resource::<Robot>();
-        let columns = PyDict::new(py);
-        let names: Vec<_> = layout.joints.iter().map(|it| it.name.to_string()).collect();
-        columns.set_item("name", names)?;
-        let states = || robot.joints.iter();
-        let array = |numbers: Vec<f64>| numbers.to_pyarray(py);
-        columns.set_item("position", array(states().map(|it| it.position).collect()))?;
-        columns.set_item("velocity", array(states().map(|it| it.velocity).collect()))?;
-        columns.set_item("torque", array(states().map(|it| it.torque).collect()))?;
-        for (name, end) in [("low", 0), ("high", 1)] {
-            let limits = layout.joints.iter().map(|it| it.limits[end]);
-            columns.set_item(name, array(limits.collect()))?;
-        }
-        Ok(columns)
+        joints(py, self.0.world())
     }
 
     /// For each limb its name, joints, gripper, end effector, held objects, obstacle and motion.

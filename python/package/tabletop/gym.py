@@ -471,3 +471,11 @@ def register() -> None:
                 vector_entry_point="tabletop.gym:TabletopVectorEnv",
                 kwargs={"name": name},
             )
+    if "tabletop/Joints-v0" not in gymnasium.registry:
+        # Without Gymnasium's wrappers: LeRobot reads the task from the environment itself.
+        gymnasium.register(
+            "tabletop/Joints-v0",
+            entry_point="tabletop.joint_env:JointEnv",
+            disable_env_checker=True,
+            order_enforce=False,
+        )

@@ -1,0 +1,122 @@
+"""Environments for policies that have learned from exported datasets."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import tabletop
+
+gymnasium = pytest.importorskip("gymnasium")
+from tabletop.cameras import camera_list, camera_name  # noqa: E402
+from tabletop.grip import PRESS, SLACK, pressed  # noqa: E402
+from tabletop.joint_env import JointEnv  # noqa: E402
+
+ARM = str(ROOT / "assets/panda/robot.ron")
+LIFT = str(ROOT / "examples/learn/lift_block.ron")
+
+
+def made(**options):
+    return JointEnv(LIFT, robot=ARM, **options)
+
+
+def test_observations_are_in_their_space_and_have_what_was_asked_for():
+    seen, info = made(cameras=["head", "side=3,-4,5"], size=(40, 30)).reset(seed=1)
+    assert sorted(seen) == ["agent_pos", "pixels"] and not info["is_success"]
+    assert {name: picture.shape for name, picture in seen["pixels"].items()} == {"head": (30, 40, 3), "side": (30, 40, 3)}
+    env = made(obs_type="environment_state_agent_pos")
+    seen, _ = env.reset(seed=1)
+    assert seen in env.observation_space and seen["environment_state"].shape == (7,)
+    assert seen["environment_state"][2] == pytest.approx(0.2, abs=0.01)
+
+
+def test_an_action_says_where_the_joints_are_in_the_end():
+    env = made()
+    seen, _ = env.reset(seed=2)
+    near = seen["agent_pos"] + np.float32([0.05, 0, 0, 0, 0, 0, -0.05, 0])
+    after, *_ = env.step(near)
+    assert after["agent_pos"] == pytest.approx(near, abs=1e-5)
+    far = near + np.float32([0.5, 0, 0, 0, 0, 0, 0, 0])
+    after, *_ = env.step(far)
+    assert after["agent_pos"] == pytest.approx(far, abs=1e-5)
+
+
+def test_an_action_beyond_a_limit_goes_to_the_limit():
+    env = made()
+    env.reset(seed=2)
+    seen, *_ = env.step(np.full(8, 10.0))
+    assert seen["agent_pos"][0] == pytest.approx(env.action_space.high[0], abs=1e-5)
+
+
+def test_an_episode_is_cut_off_after_its_length():
+    env = made(episode_length=2)
+    seen, _ = env.reset(seed=3)
+    assert not env.step(seen["agent_pos"])[3]
+    assert env.step(seen["agent_pos"])[3]
+
+
+def test_gymnasium_and_lerobot_find_it_bare():
+    tabletop.gym.register()
+    env = gymnasium.make("tabletop/Joints-v0", task="Instruction")
+    assert type(env) is JointEnv
+    env.reset(seed=4)
+    assert env.task_description.endswith(".")
+    told = env.task_description
+    env.reset(seed=5)
+    assert env.task_description != told
+
+
+@pytest.mark.parametrize("options", [{"fps": 7}, {"obs_type": "pixels"}, {"cameras": ["nose"]}])
+def test_what_makes_no_sense_is_refused(options):
+    with pytest.raises(tabletop.Error):
+        made(**options)
+
+
+@pytest.mark.parametrize(
+    ("ordered", "opening", "holds", "result"),
+    [
+        (0.7, 0.4, False, 0.7),
+        (0.4, 0.5, False, 0.4 - PRESS),
+        (0.41, 0.4, True, 0.4 - SLACK),
+        (0.4 + 2 * PRESS, 0.4, True, 0.4 + 2 * PRESS),
+        (0.69, 0.7, False, 0.69),
+    ],
+)
+def test_fingers_press_and_do_not_let_go_by_a_hair(ordered, opening, holds, result):
+    assert pressed(ordered, opening, holds) == pytest.approx(result)
+
+
+def test_cameras_are_listed_as_for_export():
+    cameras = camera_list("head, left_hand,side=12,-4,7,0,0,1")
+    assert cameras == ["head", "left_hand", "side=12,-4,7,0,0,1"]
+    assert [camera_name(camera) for camera in cameras] == ["head", "left_hand", "side"]
+
+
+def test_the_actions_of_an_exported_dataset_do_its_task(tmp_path):
+    """The robot of the environment does what that of the dataset did, from where that began."""
+    pq = pytest.importorskip("pyarrow.parquet")
+    for command in (
+        ["run", LIFT, "--record", "demo", "--quiet"],
+        ["multiply", "demo", "--count", "2", "--out", "many", "--robot", ARM],
+        ["export", "many", "--to", "lerobot", "set", "--state", "robot", "--fps", "10", "--size", "40x30"],
+    ):
+        subprocess.run([sys.executable, "-m", "tabletop", *command], cwd=tmp_path, check=True, capture_output=True)
+    features = json.loads((tmp_path / "set/meta/info.json").read_text())["features"]
+    env = made(size=(40, 30))
+    assert features["action"]["names"] == features["observation.state"]["names"] == env.joint_names
+    assert features["observation.images.head"]["shape"] == [30, 40, 3]
+    rows = pq.read_table(tmp_path / "set/data/chunk-000/file-000.parquet").to_pylist()
+    rows = [row for row in rows if row["episode_index"] == 0]
+    tabletop.World(recording=tmp_path / "many/0000", robot=ARM).save(tmp_path / "desk-block.xml")
+    (tmp_path / "lift_block.ron").write_text((ROOT / "examples/learn/lift_block.ron").read_text())
+    env = JointEnv(str(tmp_path / "lift_block.ron"), robot=ARM, scatter=False, size=(40, 30))
+    seen, _ = env.reset(seed=0)
+    for row in rows:
+        assert seen["agent_pos"] == pytest.approx(row["observation.state"], abs=0.03)
+        seen, _, success, _, _ = env.step(np.array(row["action"]))
+        if success:
+            break
+    assert success
