@@ -259,6 +259,10 @@ fn perturbed_episodes_begin_like_their_twins() {
     for number in 0..4 {
         replays_to_the_same_bytes(folder.join(format!("000{number}")));
     }
+    let first_picture =
+        |number: u64| fs::read(folder.join(format!("000{number}/0/0.png"))).unwrap();
+    let differ = [1, 2, 3].map(|number| first_picture(number) != first_picture(0));
+    assert_eq!(differ, [true, true, false]);
     let html = fs::read_to_string(&page).unwrap();
     for part in [
         "<h2>Perturbations by task</h2>",

@@ -266,6 +266,29 @@ fn in_real_time_joints_stand_still_until_the_answer() {
 }
 
 #[test]
+fn standing_cameras_light_and_words_are_perturbed() {
+    let (policy, address) = Scripted::serve(&[0.0; 8], 10, 1);
+    let judged = ["benchmark", "beside", "--policy", &address];
+    let options = ["--mapping", "droid", "--robot", "assets/panda/robot.ron"];
+    let perturb = ["--perturb", "light,camera,words", "--jobs", "1"];
+    let words = [&judged[..], &options, &perturb, &["--episodes", "1"]].concat();
+    let output = tabletop(&words);
+    let said = stdout(&output) + &stderr(&output);
+    assert!(said.contains("| words | 0 of 1 | 0 % |"), "{said}");
+    let seen = policy.seen.lock().unwrap();
+    let differ = |key: &str| {
+        let others = seen.iter().skip(1);
+        others.map(|it| it[key] != seen[0][key]).collect::<Vec<_>>()
+    };
+    let standing = "observation/exterior_image_1_left";
+    assert_eq!(differ(standing), [true, true, false]);
+    // The camera on the hand stays where it is.
+    let wrist = "observation/wrist_image_left";
+    assert_eq!(differ(wrist), [true, false, false]);
+    assert_eq!(differ("prompt"), [false, false, true]);
+}
+
+#[test]
 fn recorded_exchanges_do_the_same_without_the_server() {
     let demo = record_shipped("red_on_blue", "served_exchanges");
     let exchanges = place("served_exchanges.wire");
