@@ -17,8 +17,10 @@ env=(--env.type=tabletop --env.robot="$arm" --env.task=examples/learn/lift_block
 "$python" -m tabletop multiply "$work/demo" --count 3 --out "$work/many" --robot "$arm" >/dev/null
 "$python" -m tabletop export "$work/many" --to lerobot "$work/set" --state robot --action joints --fps 10 --size 64x48 >/dev/null
 
+# LeRobot 0.6 calls it otherwise.
+frequency=$("$python" -c 'from lerobot.configs.train import TrainPipelineConfig as T; print("env_eval_freq" if hasattr(T, "env_eval_freq") else "eval_freq")')
 echo "== lerobot-train, with evaluation"
-"$programs/lerobot-train" --dataset.repo_id=local/set --dataset.root="$work/set" "${policy[@]}" "${env[@]}" --batch_size=2 --steps=4 --eval_freq=4 \
+"$programs/lerobot-train" --dataset.repo_id=local/set --dataset.root="$work/set" "${policy[@]}" "${env[@]}" --batch_size=2 --steps=4 "--$frequency=4" \
   --eval.n_episodes=2 --eval.batch_size=2 --num_workers=0 --wandb.enable=false --output_dir="$work/train"
 echo "== lerobot-eval"
 "$programs/lerobot-eval" --policy.path="$work/train/checkpoints/last/pretrained_model" --policy.device=cpu "${env[@]}" \
@@ -31,7 +33,6 @@ leader=(--teleop.type=tabletop_recording --teleop.id=leader --teleop.recording="
 echo "== lerobot-record"
 "$programs/lerobot-record" "${robot[@]}" "${leader[@]}" --dataset.repo_id=local/recorded --dataset.root="$work/recorded" --dataset.single_task="Pick up the red block." \
   --dataset.fps=10 --dataset.num_episodes=1 --dataset.episode_time_s=8 --dataset.video=false --dataset.push_to_hub=false --play_sounds=false
-"$python" -m tabletop dataset check "$work/recorded"
 echo "== lerobot-replay, of what lerobot-record has recorded and of what was exported"
 "$programs/lerobot-replay" "${robot[@]}" --robot.record="$work/replayed" --dataset.repo_id=local/recorded --dataset.root="$work/recorded" --dataset.episode=0 --play_sounds=false
 "$python" -m tabletop explain "$work/replayed"

@@ -41,7 +41,7 @@ fi
 [[ -d $out/train-$sees ]] || "$programs/lerobot-train" --dataset.repo_id="local/$task" --dataset.root="$out/$sees" \
   --policy.type=act --policy.push_to_hub=false --policy.device=cpu --policy.pretrained_backbone_weights=null --policy.use_vae=false --policy.dropout=0 \
   --policy.dim_model=64 --policy.dim_feedforward=256 --policy.n_heads=4 --policy.n_encoder_layers=2 --policy.chunk_size=16 --policy.n_action_steps=8 \
-  --policy.optimizer_lr=1e-3 --policy.optimizer_lr_backbone=1e-4 --batch_size="${BATCH:-32}" --steps="$steps" --log_freq=100 --save_freq="$steps" --eval_freq=0 \
+  --policy.optimizer_lr=1e-3 --policy.optimizer_lr_backbone=1e-4 --batch_size="${BATCH:-32}" --steps="$steps" --log_freq=100 --save_freq="$steps" \
   --num_workers=0 --wandb.enable=false --output_dir="$out/train-$sees"
 rm -rf "$out/eval-$sees"
 "$programs/lerobot-eval" --policy.path="$out/train-$sees/checkpoints/last/pretrained_model" --policy.device=cpu \
