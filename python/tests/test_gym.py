@@ -16,7 +16,7 @@ gymnasium = pytest.importorskip("gymnasium")
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 
-tabletop.gym.register()
+import tabletop.gym  # noqa: E402
 
 ACTIONS = ["joint_velocity", "joint_position", "end_effector_delta", "pick_place"]
 

@@ -8,7 +8,7 @@ right, Y away from the robot, Z up. Rotations are quaternions x, y, z, w. A tick
     world.glide(to=(-2, 0, 4), seconds=1)
     world.release()
 
-    env = tabletop.make("StackThree", observation="rgb")      # or gymnasium.make("tabletop/StackThree-v0")
+    env = tabletop.make("StackThree", observation="rgb")      # or, after `import tabletop.gym`, gymnasium.make("tabletop/StackThree-v0")
     many = tabletop.make_vec("StackThree", num_envs=64)
 
 `python -m tabletop` is the command line.

@@ -461,7 +461,7 @@ def make_vec(name: str | None = None, num_envs: int = 1, threads: int = 0, **opt
 
 
 def register() -> None:
-    """Makes the environments known to Gymnasium, which calls this: `gymnasium.make("tabletop/StackThree-v0")`."""
+    """Makes the environments known to Gymnasium, as `import tabletop.gym` does: `gymnasium.make("tabletop/StackThree-v0")`."""
     for name in _tabletop.registered():
         id = f"tabletop/{name}-v0"
         if id not in gymnasium.registry:
@@ -479,3 +479,6 @@ def register() -> None:
             disable_env_checker=True,
             order_enforce=False,
         )
+
+
+register()

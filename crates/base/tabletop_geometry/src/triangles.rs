@@ -48,6 +48,9 @@ impl Triangles {
     }
 }
 
+/// Sine of the angle to a plane up to which a ray lies in it. (`a_ray_in_the_plane_of_a_triangle_does_not_enter_it`)
+const GRAZING: f32 = 1e-5;
+
 /// The point where a ray enters a triangle through its front (Möller and Trumbore).
 pub(crate) fn enter_triangle(
     origin: Vec3,
@@ -66,12 +69,37 @@ pub(crate) fn enter_triangle(
     let u = from_a.dot(across);
     let v = direction.dot(from_a.cross(ab));
     let distance = ac.dot(from_a.cross(ab)) / det;
-    (u >= 0.0 && v >= 0.0 && u + v <= det && distance >= 0.0).then_some(distance)
+    let is_met = u >= 0.0 && v >= 0.0 && u + v <= det && distance >= 0.0;
+    (is_met && !is_grazed(det, direction, ab.cross(ac))).then_some(distance)
+}
+
+/// True of a ray that lies in the plane of a triangle up to rounding, so that where it meets it is chance.
+fn is_grazed(det: f32, direction: Vec3, normal: Vec3) -> bool {
+    det * det <= GRAZING * GRAZING * direction.length_squared() * normal.length_squared()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_ray_in_the_plane_of_a_triangle_does_not_enter_it() {
+        let (b, c) = (Vec3::new(0.7, 0.0, 0.2), Vec3::new(0.7, 0.0, -0.2));
+        for turn in [0.0, 1e-8, 1e-7, -1e-7] {
+            let down = Vec3::new(turn, turn, -1.0);
+            for y in [0.0, 1e-8, -1e-8] {
+                let origin = Vec3::new(0.5, y, 0.5);
+                for [a, b, c] in [[Vec3::X, b, c], [Vec3::X, c, b]] {
+                    assert_eq!(enter_triangle(origin, down, a, b, c), None, "{turn}, {y}");
+                }
+            }
+        }
+        let near = Vec3::new(0.8, 1e-3, 0.3);
+        let towards = Vec3::new(0.0, -1e-3, -0.3);
+        let sides = [[b, c], [c, b]];
+        let met = sides.map(|[b, c]| enter_triangle(near, towards, Vec3::X, b, c).is_some());
+        assert_ne!(met[0], met[1], "one of them is its front");
+    }
 
     #[test]
     fn a_ray_meets_a_triangle_from_its_front_only() {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use pulldown_cmark::Event;
 
 use crate::{
-    chapter::Chapter,
+    chapter::BookChapter,
     contents::{PARTS, chapters},
 };
 
@@ -17,7 +17,7 @@ pub const GENERATOR: &str = "<meta name=\"generator\" content=\"tabletop docs\">
 
 /// The book as one page of HTML, with everything in it.
 pub fn book() -> String {
-    let chapters: Vec<_> = chapters().map(Chapter::of).collect();
+    let chapters: Vec<_> = chapters().map(BookChapter::of).collect();
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n{GENERATOR}\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -32,7 +32,7 @@ pub fn book() -> String {
 }
 
 /// The contents, part by part.
-fn contents(chapters: &[Chapter]) -> String {
+fn contents(chapters: &[BookChapter]) -> String {
     let mut chapters = chapters.iter();
     let mut html = String::new();
     for part in &PARTS {
@@ -51,7 +51,7 @@ fn contents(chapters: &[Chapter]) -> String {
 }
 
 /// The chapters, each with the way to its neighbours.
-fn articles(chapters: &[Chapter]) -> String {
+fn articles(chapters: &[BookChapter]) -> String {
     let mut html = String::new();
     for (i, chapter) in chapters.iter().enumerate() {
         let neighbour = |i: Option<usize>, kind: &str| {

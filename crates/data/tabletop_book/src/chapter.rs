@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// A chapter of the book.
-pub(crate) struct Chapter {
+pub(crate) struct BookChapter {
     /// Its name in addresses.
     pub name: String,
     pub title: String,
@@ -19,7 +19,7 @@ pub(crate) struct Chapter {
     pub html: String,
 }
 
-impl Chapter {
+impl BookChapter {
     /// The chapter that a page is.
     pub fn of(path: &str) -> Self {
         let name = name(path);
@@ -90,14 +90,14 @@ impl Chapter {
     }
 }
 
-struct Heading {
+struct BookHeading {
     level: HeadingLevel,
     id: String,
     text: String,
 }
 
 /// The headings of a page. Their names in addresses begin with that of the chapter.
-fn headings(events: &[Event], chapter: &str) -> Vec<Heading> {
+fn headings(events: &[Event], chapter: &str) -> Vec<BookHeading> {
     let mut headings = Vec::new();
     let mut seen = BTreeMap::<String, usize>::new();
     let mut present: Option<(HeadingLevel, String)> = None;
@@ -118,7 +118,7 @@ fn headings(events: &[Event], chapter: &str) -> Vec<Heading> {
                     count => format!("{chapter}--{anchor}-{count}"),
                 };
                 *count += 1;
-                headings.push(Heading { level, id, text });
+                headings.push(BookHeading { level, id, text });
             }
             _ => {}
         }

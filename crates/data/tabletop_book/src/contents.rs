@@ -1,14 +1,14 @@
 //! The parts of the book, and their chapters in the order in which they are read.
 
 /// A part of the book.
-pub(crate) struct Part {
+pub(crate) struct BookPart {
     pub title: &'static str,
     /// Paths of the chapters' sources.
     pub chapters: &'static [&'static str],
 }
 
-pub(crate) const PARTS: [Part; 6] = [
-    Part {
+pub(crate) const PARTS: [BookPart; 6] = [
+    BookPart {
         title: "Begin",
         chapters: &[
             "README.md",
@@ -18,7 +18,7 @@ pub(crate) const PARTS: [Part; 6] = [
             "docs/glossary.md",
         ],
     },
-    Part {
+    BookPart {
         title: "Show and record",
         chapters: &[
             "docs/window.md",
@@ -29,7 +29,7 @@ pub(crate) const PARTS: [Part; 6] = [
             "docs/films.md",
         ],
     },
-    Part {
+    BookPart {
         title: "Understand and learn",
         chapters: &[
             "docs/imitation.md",
@@ -40,7 +40,7 @@ pub(crate) const PARTS: [Part; 6] = [
             "docs/policies.md",
         ],
     },
-    Part {
+    BookPart {
         title: "Data",
         chapters: &[
             "docs/export.md",
@@ -49,7 +49,7 @@ pub(crate) const PARTS: [Part; 6] = [
             "docs/cluster.md",
         ],
     },
-    Part {
+    BookPart {
         title: "Robots and programs",
         chapters: &[
             "docs/robot.md",
@@ -59,7 +59,7 @@ pub(crate) const PARTS: [Part; 6] = [
             "docs/python.md",
         ],
     },
-    Part {
+    BookPart {
         title: "Reference",
         chapters: &[
             "docs/controls.md",

@@ -383,6 +383,7 @@ fn overlap(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
+    use bevy::math::Quat;
     use tabletop_core::Part;
     use tabletop_geometry::Rgb;
 
@@ -501,6 +502,36 @@ mod tests {
         assert!(arrangement.posts("free").is_empty());
         assert!(arrangement.posts("peg").is_empty());
         assert!(arrangement.containers("ring").is_empty());
+    }
+
+    #[test]
+    fn a_ring_is_around_a_pole_whose_axis_is_in_the_planes_of_its_wedges() {
+        let color = Rgb::RED;
+        let pole = Shape::Cylinder {
+            radius: 0.25,
+            yspan: 1.4,
+            color,
+        };
+        let upright = Pose::from_degrees(Vec3::new(0.0, -3.0, 0.9), Vec3::X * 90.0);
+        // As a hand left it.
+        let tilt = Quat::from_xyzw(
+            9.281_648_5e-8,
+            2.409_496_2e-8,
+            -0.001_291_987_6,
+            0.999_999_2,
+        );
+        let place = Pose::new(Vec3::new(-1.070_249_5e-8, -3.0, 0.399_999_9), tilt);
+        for sides in [16, 32] {
+            let ring = Shape::Ring {
+                radius_outer: 1.07,
+                radius_inner: 0.35,
+                zspan: 0.4,
+                sides,
+                color,
+            };
+            let arrangement = Arrangement::new([("ring", &ring, place), ("pole", &pole, upright)]);
+            assert_eq!(arrangement.posts("ring"), ["pole"], "{sides}");
+        }
     }
 
     #[test]

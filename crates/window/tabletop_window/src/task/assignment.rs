@@ -39,7 +39,7 @@ pub(super) struct ProgramAssignment {
 }
 
 /// What the robot does now: the [`RobotController`] is an [`Execution`] of this task.
-pub(super) struct Act {
+pub(super) struct BegunTask {
     pub task: Task,
     /// Ghosts of objects at their goals, with their steps.
     pub ghosts: Vec<(usize, Ghost)>,
@@ -47,7 +47,7 @@ pub(super) struct Act {
 
 /// What follows in an assignment.
 pub(super) enum Next {
-    Act(Act),
+    Begun(BegunTask),
     /// It is done: the sentence that says so.
     Done(String),
 }
@@ -80,7 +80,7 @@ impl Assignment {
                 let binding = binding.map_err(|unbound| unbound.to_string())?;
                 let mut task = lesson.task.clone();
                 task.phrase(&lesson.requirements);
-                act(world, task, binding, SEED).map(Next::Act)
+                begun(world, task, binding, SEED).map(Next::Begun)
             }
             Self::Program(program) => program.begin(world, &objects),
         }
@@ -131,7 +131,7 @@ impl ProgramAssignment {
         let (task, binding) = attempt.step.task(&scene);
         let seed = SEED + (attempt.number + attempt.tries) as u64;
         self.attempt = Some(attempt);
-        act(world, task, binding, seed).map(Next::Act)
+        begun(world, task, binding, seed).map(Next::Begun)
     }
 
     fn did(&mut self) {
@@ -159,7 +159,7 @@ fn objects(world: &World) -> Vec<ObjectSpec> {
 }
 
 /// Lets the robot do a task with these objects.
-fn act(world: &mut World, task: Task, binding: Binding, seed: u64) -> Result<Act, String> {
+fn begun(world: &mut World, task: Task, binding: Binding, seed: u64) -> Result<BegunTask, String> {
     let table = world.query::<&Table>().iter(world).next().copied();
     let description = world
         .get_resource::<Description>()
@@ -198,5 +198,5 @@ fn act(world: &mut World, task: Task, binding: Binding, seed: u64) -> Result<Act
     let execution = Execution::begin(layout, body, task.clone(), binding, sight, seed, pace);
     let execution = execution.map_err(|error| error.to_string())?;
     world.insert_resource(RobotController::new(execution));
-    Ok(Act { task, ghosts })
+    Ok(BegunTask { task, ghosts })
 }

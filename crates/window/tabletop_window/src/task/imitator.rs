@@ -9,7 +9,7 @@ use tabletop_core::{
 use tabletop_planner::Execution;
 use tabletop_user::{Ghost, Ghosts, ImitatedStep, Imitating, Notices, Tone};
 
-use super::assignment::{Act, Assignment, Next};
+use super::assignment::{Assignment, BegunTask, Next};
 
 /// Number of ticks until the robot is at the table, and objects on it are at rest.
 const PREPARATION: u32 = 30;
@@ -26,7 +26,7 @@ enum ImitatorState {
     Preparing { assignment: Assignment, ticks: u32 },
     Acting {
         assignment: Assignment,
-        act: Box<Act>,
+        begun: Box<BegunTask>,
     },
 }
 
@@ -69,10 +69,10 @@ impl RobotImitator {
         match &self.0 {
             ImitatorState::Idle => Imitating::Idle,
             ImitatorState::Preparing { .. } => Imitating::Preparing,
-            ImitatorState::Acting { assignment, act } => {
+            ImitatorState::Acting { assignment, begun } => {
                 match (execution, execution.and_then(Execution::doing)) {
                     (Some(execution), Some(doing)) => {
-                        let step = assignment.step(doing.step, &act.task);
+                        let step = assignment.step(doing.step, &begun.task);
                         Imitating::Step(ImitatedStep {
                             tries: step.tries + doing.tries,
                             is_planning: execution.is_planning(),
@@ -87,12 +87,12 @@ impl RobotImitator {
 
     /// Ghosts of the steps that are not done yet.
     fn ghosts(&self, execution: Option<&Execution>) -> Vec<Ghost> {
-        let ImitatorState::Acting { act, .. } = &self.0 else {
+        let ImitatorState::Acting { begun, .. } = &self.0 else {
             return Vec::new();
         };
         let doing = execution.and_then(Execution::doing);
         let present = doing.map_or(1, |doing| doing.step);
-        let left = act.ghosts.iter().filter(|(step, _)| *step >= present);
+        let left = begun.ghosts.iter().filter(|(step, _)| *step >= present);
         left.map(|(step, ghost)| Ghost {
             is_next: *step == present,
             ..ghost.clone()
@@ -161,7 +161,9 @@ impl RobotImitator {
                     false => self.begin(assignment, world),
                 }
             }
-            ImitatorState::Acting { assignment, act } => self.act_on(assignment, act, world),
+            ImitatorState::Acting { assignment, begun } => {
+                self.go_on_with(assignment, begun, world)
+            }
         }
     }
 
@@ -171,9 +173,9 @@ impl RobotImitator {
         world: &mut World,
     ) -> Option<Result<String, String>> {
         match assignment.begin(world) {
-            Ok(Next::Act(act)) => {
-                let act = Box::new(act);
-                self.0 = ImitatorState::Acting { assignment, act };
+            Ok(Next::Begun(begun)) => {
+                let begun = Box::new(begun);
+                self.0 = ImitatorState::Acting { assignment, begun };
                 None
             }
             Ok(Next::Done(report)) => Some(Ok(report)),
@@ -181,19 +183,19 @@ impl RobotImitator {
         }
     }
 
-    fn act_on(
+    fn go_on_with(
         &mut self,
         mut assignment: Assignment,
-        act: Box<Act>,
+        begun: Box<BegunTask>,
         world: &World,
     ) -> Option<Result<String, String>> {
         let execution = world.resource::<RobotController>().get::<Execution>();
         let Some(result) = execution.and_then(Execution::result) else {
-            self.0 = ImitatorState::Acting { assignment, act };
+            self.0 = ImitatorState::Acting { assignment, begun };
             return None;
         };
         if let Some((number, failure)) = &result.failure {
-            let step = assignment.step(*number, &act.task);
+            let step = assignment.step(*number, &begun.task);
             let ImitatedStep {
                 number, sentence, ..
             } = step;
