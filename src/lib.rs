@@ -32,6 +32,7 @@
 //! | [`film`] | Recordings on film: the pictures of any camera at any rate, and videos, animations and contact sheets of them |
 //! | [`replay`] | Recordings, simulated again: replays, their verification, and any moment of a recording |
 //! | [`validation`] | The simulator's physics beside the closed-form results of mechanics |
+//! | [`book`] | The documentation as a book: one page with contents, search and the way from chapter to chapter, which a browser shows without network |
 //! | [`dataset`] | Folders of recordings and exported datasets: imported from other programs, described, checked, repaired, merged and split |
 //! | [`export`] | Recordings as datasets of other tools |
 //! | [`policy`] | A policy learned from one demonstration: from the head camera's picture to what is to be taken next, and where it is to be put |

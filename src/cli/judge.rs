@@ -260,9 +260,13 @@ impl JudgeOptions {
     }
 }
 
-/// The tasks whose names begin so; all if there are no names.
+/// The tasks of these names, or those whose names begin so; all if there are no names.
 fn tasks_of(names: &[String]) -> Result<Vec<&'static JudgedTask>, Failure> {
-    let is_of = |task: &JudgedTask, name: &String| task.name.starts_with(name.as_str());
+    let is_whole = |name: &String| JUDGED_TASKS.iter().any(|task| task.name == name);
+    let is_of = |task: &JudgedTask, name: &String| match is_whole(name) {
+        true => task.name == name,
+        false => task.name.starts_with(name.as_str()),
+    };
     let unknown = names
         .iter()
         .find(|name| !JUDGED_TASKS.iter().any(|task| is_of(task, name)));
@@ -305,4 +309,21 @@ fn json_of(map: &WireMap) -> Value {
     };
     let entries = map.iter().map(|(key, it)| (key.clone(), value(it)));
     Value::Object(entries.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_name_is_one_task_and_a_beginning_is_all_that_begin_so() {
+        let named = |name: &str| tasks_of(&[name.to_owned()]).map_or(0, |tasks| tasks.len());
+        assert_eq!(named("stack"), 1);
+        assert!(named("s") > 1);
+        assert_eq!(named("nothing"), 0);
+        assert_eq!(
+            tasks_of(&[]).map_or(0, |tasks| tasks.len()),
+            JUDGED_TASKS.len()
+        );
+    }
 }
