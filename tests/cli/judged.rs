@@ -68,9 +68,10 @@ fn dicing(answers: u64) -> (Arc<AtomicU64>, String) {
 /// The words that judge a policy in three tasks, of three episodes each, and write them into a file.
 fn words<'a>(address: &'a str, file: &'a Path) -> Vec<&'a str> {
     let file = file.to_str().unwrap();
-    let tasks = ["benchmark", "stack", "box", "--policy", address];
+    let named = ["stack", "stack-among-others", "box"];
     let options = ["--robot", "assets/panda/robot.ron", "--episodes", "3"];
-    [&tasks[..], &options[..], &["--json", file]].concat()
+    let judge = ["benchmark", "--policy", address];
+    [&judge[..], &named, &options, &["--json", file]].concat()
 }
 
 /// Judges so; the table, without the seconds that it took.

@@ -6,7 +6,8 @@ use bevy::math::Vec3;
 use tabletop_core::{ObjectSpec, SimTick};
 use tabletop_geometry::Pose;
 use tabletop_task::{
-    Binding, Freedom, Goal, PlaceRange, Reference, Relation, Role, Symmetry, Task, TaskStep,
+    Arrangement, Binding, Freedom, Goal, PlaceRange, Reference, Relation, Role, Symmetry, Task,
+    TaskStep,
 };
 
 use crate::{
@@ -81,7 +82,8 @@ impl ConcreteStep {
 
     /// The task of doing it, and the objects of its roles.
     pub fn task(&self, scene: &TableScene) -> (Task, Binding) {
-        let others = self.relation.object().into_iter();
+        let relations = self.task_relations(scene);
+        let others = relations.iter().filter_map(Relation::object);
         let ids: Vec<_> = [self.object.as_str()].into_iter().chain(others).collect();
         let roles = ids.iter().filter_map(|id| {
             let shown = scene.object(id)?.clone();
@@ -102,7 +104,7 @@ impl ConcreteStep {
             grasp: SimTick(0),
             release: SimTick(0),
             meanwhile: false,
-            relations: vec![self.task_relation()],
+            relations: relations.clone(),
             goal: self.goal(scene),
             tipping: None,
             load: Vec::new(),
@@ -122,12 +124,28 @@ impl ConcreteStep {
         (task, Binding(same))
     }
 
-    /// The relation that a task of this step alone has. What is put aside goes to a place that later steps leave free, of which such a task knows nothing.
-    fn task_relation(&self) -> Relation {
-        match self.relation == Relation::Aside {
+    /// The relations that a task of this step alone has. What is put aside goes to a place that later steps leave free, of which such a task knows nothing; what is
+    /// put around a post rests on what is around that already.
+    fn task_relations(&self, scene: &TableScene) -> Vec<Relation> {
+        let mut relations = vec![match self.relation == Relation::Aside {
             true => Relation::OnTable,
             false => self.relation.clone(),
+        }];
+        if let Relation::Around { object: post } = &self.relation {
+            let below = self.support(scene).filter(|below| below != post);
+            relations.extend(below.map(|object| Relation::On { object }));
         }
+        relations
+    }
+
+    /// The object on which its object is to rest.
+    fn support(&self, scene: &TableScene) -> Option<String> {
+        let after = scene.after(self);
+        let objects = after.objects.iter();
+        let placed = objects.map(|object| (object.id.as_str(), &object.shape, object.pose));
+        let arrangement = Arrangement::new(placed);
+        let supports = arrangement.supports(&self.object);
+        supports.first().map(|support| (*support).to_owned())
     }
 
     fn goal(&self, scene: &TableScene) -> Option<Goal> {

@@ -4,7 +4,7 @@
 use bevy::math::{Quat, Vec3};
 use tabletop_core::ObjectSpec;
 use tabletop_geometry::{Pose, Rgb};
-use tabletop_program::TableScene;
+use tabletop_program::{ProgramRun, TableScene};
 use tabletop_task::{Arrangement, Relation};
 
 use scenes::{chest, container, cube, done, hanoi, on, plate, refused, rehearsed, scene, spread};
@@ -336,6 +336,28 @@ fn rings_move_as_in_hanoi() {
             assert_eq!(arrangement(&after).posts(&format!("Ring{i}")), ["PegC"]);
         }
     }
+}
+
+#[test]
+fn a_ring_rests_on_what_is_around_its_post() {
+    let mut table = hanoi(2);
+    let program = "Move the tower from PegA to PegC by way of PegB.".parse();
+    let (steps, _, failure) = ProgramRun::rehearsed(&program.unwrap(), &table);
+    assert_eq!(failure, None);
+    let relations = steps.iter().map(|step| {
+        let (task, binding) = step.task(&table);
+        table = table.after(step);
+        let relations = &task.steps[0].relations;
+        let others = relations.iter().filter_map(Relation::object);
+        let others: Vec<_> = others.map(str::to_owned).collect();
+        assert!(others.iter().all(|other| binding.object(other).is_some()));
+        others
+    });
+    let relations: Vec<_> = relations.collect();
+    assert_eq!(
+        relations,
+        [vec!["PegB"], vec!["PegC"], vec!["PegC", "Ring0"]]
+    );
 }
 
 #[test]
