@@ -262,7 +262,7 @@ fn another_robot_shows_it() {
     }
     replays_to_the_same_bytes(out.join("0000"));
     // Its camera is moved, not Baxter's.
-    let recording = RecordingReader::open(&out.join("0000")).unwrap();
+    let recording = RecordingReader::open(out.join("0000")).unwrap();
     let moved = recording.header().camera.unwrap();
     let usual = HeadCamera {
         mount: None,

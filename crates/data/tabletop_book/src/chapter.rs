@@ -28,50 +28,30 @@ impl BookChapter {
         let headings = headings(&events, &name);
         let mut ids = headings.iter().map(|heading| heading.id.clone());
         let mut is_linked = Vec::new();
-        let events = events.into_iter().filter_map(|event| match event {
-            Event::Start(Tag::Heading {
-                level,
-                classes,
-                attrs,
+        let events = events.into_iter().filter_map(|event| {
+            let Event::Start(mut tag) = event else {
+                let ends_link = event == Event::End(TagEnd::Link);
+                return (!ends_link || is_linked.pop()?).then_some(event);
+            };
+            if let Tag::Heading { id, .. } = &mut tag {
+                *id = ids.next().map(CowStr::from);
+            }
+            if let Tag::Image { dest_url, .. } = &mut tag
+                && let Some(held) = picture(&resolved(path, dest_url))
+            {
+                *dest_url = held.into();
+            }
+            if let Tag::Link {
+                link_type,
+                dest_url,
                 ..
-            }) => Some(Event::Start(Tag::Heading {
-                level,
-                id: ids.next().map(CowStr::from),
-                classes,
-                attrs,
-            })),
-            Event::Start(Tag::Link {
-                link_type,
-                dest_url,
-                title,
-                id,
-            }) => {
-                let address = address(path, &name, link_type, &dest_url);
+            } = &mut tag
+            {
+                let address = address(path, &name, *link_type, dest_url);
                 is_linked.push(address.is_some());
-                let dest_url = CowStr::from(address?);
-                Some(Event::Start(Tag::Link {
-                    link_type,
-                    dest_url,
-                    title,
-                    id,
-                }))
+                *dest_url = address?.into();
             }
-            Event::End(TagEnd::Link) => is_linked.pop()?.then_some(Event::End(TagEnd::Link)),
-            Event::Start(Tag::Image {
-                link_type,
-                dest_url,
-                title,
-                id,
-            }) => {
-                let dest_url = picture(&resolved(path, &dest_url)).map_or(dest_url, CowStr::from);
-                Some(Event::Start(Tag::Image {
-                    link_type,
-                    dest_url,
-                    title,
-                    id,
-                }))
-            }
-            event => Some(event),
+            Some(Event::Start(tag))
         });
         let mut html = String::new();
         html::push_html(&mut html, events);

@@ -1,4 +1,5 @@
 //! The beginnings of the tasks by which policies are judged, for each robot inside the program.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{collections::BTreeSet, path::Path};
 
