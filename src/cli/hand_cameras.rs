@@ -1,9 +1,9 @@
 //! The option that records the pictures of hand cameras.
 
-use crate::{core::RobotLayout, recorder::HandPictures, robot::RobotPlugin};
+use crate::{recorder::HandPictures, robot::RobotPlugin};
 use clap::Args;
 
-use super::Failure;
+use super::{Failure, robot_options::layout_of};
 
 #[derive(Args, Clone, Copy)]
 pub(super) struct HandCameraOption {
@@ -18,10 +18,7 @@ impl HandCameraOption {
     /// # Errors
     /// It has no such camera.
     pub fn of(self, robot: &RobotPlugin) -> Result<HandPictures, Failure> {
-        let layout = match &robot.description {
-            Some(description) => &description.layout,
-            None => RobotLayout::baxter(),
-        };
+        let layout = layout_of(robot);
         match self.hand_cameras {
             false => Ok(HandPictures::None),
             true if layout.hand_cameras.is_empty() => Err(Failure::input(format!(

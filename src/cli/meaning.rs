@@ -12,7 +12,7 @@ pub(super) const ASKED: &str = "Which is meant?";
 pub(super) fn told(meaning: &Meaning) -> Vec<String> {
     let alternatives = meaning.alternatives.iter().zip(1..);
     let alternatives = alternatives.map(|(other, number)| {
-        let program = other.program.to_string().replace('\n', " ");
+        let program = other.program.in_a_line();
         let differs = &other.decided_by.sentence;
         format!("Or {number}: {program} It differs {differs}.")
     });

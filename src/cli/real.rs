@@ -7,7 +7,7 @@ use std::{
 
 use crate::{
     bridge::{Address, Bridge, BridgeOptions, BridgeProfile, PictureFeed, Sentinel, Shadow},
-    core::{RobotCommand, RobotLayout, RobotMode, Table, WriteCommand as _},
+    core::{RobotCommand, RobotMode, Table, WriteCommand as _},
     real::{RealLink, RealRobot, head_pictures, interface_of, sentinel_command, shipped_body},
     robot::RobotPlugin,
     robot_body,
@@ -16,7 +16,12 @@ use bevy::prelude::*;
 use clap::Args;
 use serde_json::{Map, Value};
 
-use super::{Failure, range::NumberRange, robot_options::describe, terminal::say};
+use super::{
+    Failure,
+    range::NumberRange,
+    robot_options::{describe, layout_of},
+    terminal::say,
+};
 
 const SHARES: NumberRange<f64> = NumberRange::decimal(0.01, 1.0);
 
@@ -236,9 +241,7 @@ fn folder(robot: &RobotPlugin) -> Option<&Path> {
 }
 
 fn profile(address: &Address, robot: &RobotPlugin) -> Result<BridgeProfile, Failure> {
-    let description = robot.description.as_ref();
-    let layout = description.map_or(RobotLayout::baxter(), |it| &it.layout);
-    interface_of(address, folder(robot), layout).map_err(Failure::input)
+    interface_of(address, folder(robot), layout_of(robot)).map_err(Failure::input)
 }
 
 /// The pictures of the head camera, if the robot has one that shows them.

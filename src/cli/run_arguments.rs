@@ -19,7 +19,7 @@ use super::{
     quiet::QuietOption,
     range::SEEDS,
     real::{self, RealOptions},
-    robot_options::{EngineOptions, RobotOptions, script},
+    robot_options::{EngineOptions, RobotOptions, layout_of, script},
     script::headless_settings,
     seed_range::seed_range,
     shard::ShardOption,
@@ -27,7 +27,7 @@ use super::{
 };
 use crate::{
     TabletopSimPlugins,
-    core::{RobotLayout, SceneSpec},
+    core::SceneSpec,
     real::RealRobotPlugin,
     recorder::{HandPictures, RecorderPlugin, UnrecordedPlugin},
     robot::RobotPlugin,
@@ -121,8 +121,7 @@ impl RunArgs {
             scenario.begin_with(&true_path(setup));
         }
         let robot = self.real.body(self.robot.plugin()?)?;
-        let layout = robot.description.as_ref().map(|robot| &robot.layout);
-        let checked = scenario.check_for(layout.unwrap_or(RobotLayout::baxter()));
+        let checked = scenario.check_for(layout_of(&robot));
         checked.map_err(Failure::input)?;
         Ok((scenario, robot))
     }

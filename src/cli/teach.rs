@@ -91,7 +91,7 @@ pub(super) fn teach(args: &TeachArgs) -> Result<ExitCode, Failure> {
 /// The task file of the table on which the first alternative acts differently.
 fn question(program: &TaskProgram, meaning: &Meaning) -> Option<String> {
     let other = meaning.alternatives.first()?;
-    let lines = [program, &other.program].map(|program| program.to_string().replace('\n', " "));
+    let lines = [program, &other.program].map(TaskProgram::in_a_line);
     let [program, other_said] = lines.map(|line| line.replace("--", "- -"));
     let comment = format!("<!-- {ASKED} {program} Or: {other_said} -->");
     let scene = write(&other.decided_by.scene.items());

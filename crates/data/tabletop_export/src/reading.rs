@@ -105,7 +105,7 @@ impl TrainingEpisode {
 /// The sentences of the program that a demonstration means, if that is more than its steps.
 fn meant(shown: &Demonstration, task: &Task) -> Option<String> {
     let program = Meaning::beyond_steps(shown, task)?.program?;
-    Some(program.to_string().replace('\n', " "))
+    Some(program.in_a_line())
 }
 
 /// The recording to be simulated again, read once.

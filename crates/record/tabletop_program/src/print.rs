@@ -23,6 +23,13 @@ impl Display for TaskProgram {
     }
 }
 
+impl TaskProgram {
+    /// It in one line.
+    pub fn in_a_line(&self) -> String {
+        self.to_string().replace('\n', " ")
+    }
+}
+
 impl Display for Sentence {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.write_str(&whole(self))

@@ -45,6 +45,11 @@ impl Standing {
         self.has(id, base, |object| &object.supports)
     }
 
+    /// The object on which an object rests.
+    pub fn support(&self, id: &str) -> Option<&str> {
+        self.0.get(id)?.supports.first().map(String::as_str)
+    }
+
     /// True if an object has the walls of another one on all sides.
     pub fn is_between_walls(&self, id: &str, container: &str) -> bool {
         self.has(id, container, |object| &object.containers)

@@ -6,8 +6,7 @@ use bevy::math::Vec3;
 use tabletop_core::{ObjectSpec, SimTick};
 use tabletop_geometry::Pose;
 use tabletop_task::{
-    Arrangement, Binding, Freedom, Goal, PlaceRange, Reference, Relation, Role, Symmetry, Task,
-    TaskStep,
+    Binding, Freedom, Goal, PlaceRange, Reference, Relation, Role, Symmetry, Task, TaskStep,
 };
 
 use crate::{
@@ -141,11 +140,8 @@ impl ConcreteStep {
     /// The object on which its object is to rest.
     fn support(&self, scene: &TableScene) -> Option<String> {
         let after = scene.after(self);
-        let objects = after.objects.iter();
-        let placed = objects.map(|object| (object.id.as_str(), &object.shape, object.pose));
-        let arrangement = Arrangement::new(placed);
-        let supports = arrangement.supports(&self.object);
-        supports.first().map(|support| (*support).to_owned())
+        let view = after.view();
+        view.standing.support(&self.object).map(str::to_owned)
     }
 
     fn goal(&self, scene: &TableScene) -> Option<Goal> {

@@ -45,7 +45,7 @@ pub(crate) fn nearest(
         let ((cost, _), (of, repair)) = repairs.pop_first()?;
         let text = repair.on(&tried[of]);
         match parsed(&text) {
-            Ok(program) => return Some(program.to_string().replace('\n', " ")),
+            Ok(program) => return Some(program.in_a_line()),
             Err(misfit) => add(&mut repairs, cost, tried.len(), &text, &misfit),
         }
         tried.push(text);

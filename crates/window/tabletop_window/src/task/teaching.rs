@@ -75,7 +75,7 @@ impl Teaching {
             return TaughtProgram::default();
         };
         let others = meaning.alternatives.iter().map(|other| OtherProgram {
-            sentences: in_a_line(&other.program),
+            sentences: other.program.in_a_line(),
             differs: other.decided_by.sentence.clone(),
         });
         let fault = match (&meaning.program, demonstrations) {
@@ -84,7 +84,10 @@ impl Teaching {
             (None, number) => Some(format!("no program explains all {number} demonstrations")),
         };
         TaughtProgram {
-            sentences: meaning.program.as_ref().map_or_else(String::new, in_a_line),
+            sentences: meaning
+                .program
+                .as_ref()
+                .map_or_else(String::new, TaskProgram::in_a_line),
             demonstrations,
             others: others.collect(),
             untouched: meaning.untouched.iter().map(Untouched::to_string).collect(),
@@ -92,8 +95,4 @@ impl Teaching {
             fault,
         }
     }
-}
-
-fn in_a_line(program: &TaskProgram) -> String {
-    program.to_string().replace('\n', " ")
 }
