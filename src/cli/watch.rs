@@ -350,7 +350,7 @@ impl WatchedRoll {
             unseen => format!("; an object was not seen yet in {unseen}"),
         };
         let Some(last) = errors.len().checked_sub(1) else {
-            return (pictures > 0).then(|| format!("{pictures} pictures{unseen}"));
+            return (pictures > 0).then(|| "an object was not seen in any of the pictures".into());
         };
         let share = |percent: usize| errors[last * percent / 100];
         Some(format!(
