@@ -12,7 +12,6 @@ import tabletop
 
 gymnasium = pytest.importorskip("gymnasium")
 from tabletop.cameras import camera_list, camera_name  # noqa: E402
-from tabletop.grip import PRESS, SLACK, pressed  # noqa: E402
 from tabletop.joint_env import JointEnv  # noqa: E402
 
 ARM = str(ROOT / "assets/panda/robot.ron")
@@ -39,9 +38,9 @@ def test_an_action_says_where_the_joints_are_in_the_end():
     near = seen["agent_pos"] + np.float32([0.05, 0, 0, 0, 0, 0, -0.05, 0])
     after, *_ = env.step(near)
     assert after["agent_pos"] == pytest.approx(near, abs=1e-5)
-    far = near + np.float32([0.5, 0, 0, 0, 0, 0, 0, 0])
+    far = near + np.float32([2.0, 0, 0, 0, 0, 0, 0, 0])
     after, *_ = env.step(far)
-    assert after["agent_pos"] == pytest.approx(far, abs=1e-5)
+    assert 0.05 < after["agent_pos"][0] - near[0] < 1.0, "as far as the joint's speed takes it in a tenth of a second"
 
 
 def test_an_action_beyond_a_limit_goes_to_the_limit():
@@ -75,20 +74,6 @@ def test_what_makes_no_sense_is_refused(options):
         made(**options)
 
 
-@pytest.mark.parametrize(
-    ("ordered", "opening", "holds", "result"),
-    [
-        (0.7, 0.4, False, 0.7),
-        (0.4, 0.5, False, 0.4 - PRESS),
-        (0.41, 0.4, True, 0.4 - SLACK),
-        (0.4 + 2 * PRESS, 0.4, True, 0.4 + 2 * PRESS),
-        (0.69, 0.7, False, 0.69),
-    ],
-)
-def test_fingers_press_and_do_not_let_go_by_a_hair(ordered, opening, holds, result):
-    assert pressed(ordered, opening, holds) == pytest.approx(result)
-
-
 def test_cameras_are_listed_as_for_export():
     cameras = camera_list("head, left_hand,side=12,-4,7,0,0,1")
     assert cameras == ["head", "left_hand", "side=12,-4,7,0,0,1"]
@@ -101,15 +86,20 @@ def test_the_actions_of_an_exported_dataset_do_its_task(tmp_path):
     for command in (
         ["run", LIFT, "--record", "demo", "--quiet"],
         ["multiply", "demo", "--count", "2", "--out", "many", "--robot", ARM],
-        ["export", "many", "--to", "lerobot", "set", "--state", "robot", "--fps", "10", "--size", "40x30"],
+        ["export", "many", "--to", "lerobot", "set", "--fps", "10", "--size", "40x30"],
+        ["export", "many", "--to", "lerobot", "poses", "--state", "both", "--cameras", "none", "--fps", "10"],
     ):
         subprocess.run([sys.executable, "-m", "tabletop", *command], cwd=tmp_path, check=True, capture_output=True)
     features = json.loads((tmp_path / "set/meta/info.json").read_text())["features"]
     env = made(size=(40, 30))
     assert features["action"]["names"] == features["observation.state"]["names"] == env.joint_names
     assert features["observation.images.head"]["shape"] == [30, 40, 3]
-    rows = pq.read_table(tmp_path / "set/data/chunk-000/file-000.parquet").to_pylist()
-    rows = [row for row in rows if row["episode_index"] == 0]
+    rows, told = (
+        [row for row in pq.read_table(tmp_path / name / "data/chunk-000/file-000.parquet").to_pylist() if row["episode_index"] == 0]
+        for name in ("set", "poses")
+    )
+    assert [row["observation.state"] for row in told] == [row["observation.state"] for row in rows]
+    assert any(row["action"][-1] == 0 for row in rows), "fingers that hold something are to close entirely"
     tabletop.World(recording=tmp_path / "many/0000", robot=ARM).save(tmp_path / "desk-block.xml")
     (tmp_path / "lift_block.ron").write_text((ROOT / "examples/learn/lift_block.ron").read_text())
     env = JointEnv(str(tmp_path / "lift_block.ron"), robot=ARM, scatter=False, size=(40, 30))
@@ -120,3 +110,6 @@ def test_the_actions_of_an_exported_dataset_do_its_task(tmp_path):
         if success:
             break
     assert success
+    env = JointEnv(str(tmp_path / "lift_block.ron"), robot=ARM, scatter=False, obs_type="environment_state_agent_pos")
+    seen, _ = env.reset(seed=0)
+    assert seen["environment_state"] == pytest.approx(told[0]["observation.environment_state"], abs=1e-3)

@@ -22,22 +22,14 @@ case $task in
   *) echo "there is no task $task, only lift_block and stack_blocks" >&2; exit 2 ;;
 esac
 case $sees in
-  poses) obs_type=environment_state_agent_pos ;;
-  pictures) obs_type=pixels_agent_pos ;;
+  poses) obs_type=environment_state_agent_pos episode="--state both --cameras none" ;;
+  pictures) obs_type=pixels_agent_pos episode="--state robot --cameras $camera --size ${size}x$size" ;;
   *) echo "a policy cannot see $sees, only poses and pictures" >&2; exit 2 ;;
 esac
 
 [[ -d $out/demo ]] || "$python" -m tabletop run "examples/learn/$task.ron" --record "$out/demo" --quiet
 "$python" -m tabletop multiply "$out/demo" --count "${EPISODES:-200}" --out "$out/many" --robot "$robot"
-if [[ ! -d $out/$sees ]]; then
-  case $sees in
-    poses)
-      [[ -d $out/both ]] || "$python" -m tabletop export "$out/many" --to lerobot "$out/both" --state both --action joints --fps $fps --size ${size}x$size
-      "$python" python/tools/split_state.py "$out/both" "$out/poses"
-      ;;
-    pictures) "$python" -m tabletop export "$out/many" --to lerobot "$out/pictures" --state robot --action joints --fps $fps --size ${size}x$size --cameras $camera ;;
-  esac
-fi
+[[ -d $out/$sees ]] || "$python" -m tabletop export "$out/many" --to lerobot "$out/$sees" --action joints --fps $fps $episode
 [[ -d $out/train-$sees ]] || "$programs/lerobot-train" --dataset.repo_id="local/$task" --dataset.root="$out/$sees" \
   --policy.type=act --policy.push_to_hub=false --policy.device=cpu --policy.pretrained_backbone_weights=null --policy.use_vae=false --policy.dropout=0 \
   --policy.dim_model=64 --policy.dim_feedforward=256 --policy.n_heads=4 --policy.n_encoder_layers=2 --policy.chunk_size=16 --policy.n_action_steps=8 \

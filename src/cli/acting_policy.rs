@@ -4,21 +4,14 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     benchmark::AnswerDelay,
-    core::{HeadCamera, ObjectSpec, TICKS_PER_SECOND},
-    imitation::AppStage,
-    planner::{Before, Imitation, PlanningStage as _},
-    policy::{
-        DrivenTask, PicturePolicy, Policy, RemoteError, RemotePolicy, ThinkingTime, follow_actions,
-        left_undone,
-    },
+    core::TICKS_PER_SECOND,
+    policy::{ActingPolicy, PicturePolicy, Policy, RemoteError, RemotePolicy, ThinkingTime},
     robot::RobotPlugin,
-    task::{Binding, Task},
     wire::{MappedActions, PolicyAddress, PolicyMapping, RecordedExchanges},
 };
-use bevy::prelude::*;
 use clap::Args;
 
-use super::{Failure, range::NumberRange, result_file::require_outside, robot_options::layout_of};
+use super::{Failure, range::NumberRange, result_file::require_outside};
 
 #[derive(Args)]
 pub(super) struct PolicyOptions {
@@ -42,43 +35,6 @@ pub(super) struct PolicyOptions {
 }
 
 const DELAYS: NumberRange<u64> = NumberRange::whole(0, 60_000).of("ms");
-
-/// A policy that acts for the robot.
-pub(super) enum ActingPolicy {
-    /// It decides by pictures which object is to be put where.
-    Places(Box<dyn PicturePolicy>),
-    /// So does this one, which somebody serves.
-    ServedPlaces(Box<RemotePolicy>),
-    /// It moves the robot's joints.
-    Motions(Box<RemotePolicy>),
-}
-
-impl ActingPolicy {
-    /// The policy that decides by pictures of the head camera.
-    pub fn picture_policy(&self) -> Option<&dyn PicturePolicy> {
-        match self {
-            Self::Places(policy) => Some(&**policy),
-            Self::ServedPlaces(policy) => Some(&**policy),
-            Self::Motions(_) => None,
-        }
-    }
-
-    /// The policy that somebody serves.
-    pub const fn served(&self) -> Option<&RemotePolicy> {
-        match self {
-            Self::Places(_) => None,
-            Self::ServedPlaces(policy) | Self::Motions(policy) => Some(policy),
-        }
-    }
-
-    /// Gives the head camera's pictures the size that it needs.
-    pub fn resize(&self, head: &mut HeadCamera) {
-        let size = self.picture_policy().and_then(PicturePolicy::picture_size);
-        if let Some([width, height]) = size {
-            (head.width, head.height) = (width, height);
-        }
-    }
-}
 
 impl PolicyOptions {
     /// The policy's file or address.
@@ -156,7 +112,7 @@ impl PolicyOptions {
             RemoteError::Unmapped(_) => Failure::input(error),
         };
         let mut policy = policy.map_err(failure)?;
-        policy.check_for(layout_of(robot)).map_err(Failure::input)?;
+        policy.check_for(robot.layout()).map_err(Failure::input)?;
         if let Some(file) = &self.exchanges {
             require_outside(file, &[])?;
             policy.note_in(file).map_err(failure)?;
@@ -188,47 +144,4 @@ fn read_onnx(file: &Path) -> Result<Box<dyn PicturePolicy>, Failure> {
         "{}: this program was built without ONNX; build it with cargo build --release --features onnx",
         file.display()
     )))
-}
-
-/// Simulated time, in s, that a policy which moves joints has for each step of a task.
-const SECONDS_PER_STEP: u64 = 30;
-
-/// A task in words.
-pub(super) fn words_of(task: &Task) -> String {
-    let sentences: Vec<_> = task.steps.iter().map(|step| &*step.sentence).collect();
-    sentences.join(" ")
-}
-
-/// Lets the robot do a task as a policy moves its joints.
-pub(super) fn follow_motions(
-    policy: &RemotePolicy,
-    thinking: ThinkingTime,
-    app: &mut App,
-    task: &Task,
-    binding: &Binding,
-    objects: &[ObjectSpec],
-) -> Imitation {
-    let before = Before::anything(AppStage::new(app).sight());
-    let most = task.steps.len() as u64 * SECONDS_PER_STEP * u64::from(TICKS_PER_SECOND);
-    let driven = DrivenTask {
-        prompt: &words_of(task),
-        most,
-        thinking,
-        displacement: None,
-    };
-    let followed = follow_actions(policy, app.world_mut(), &driven, |now| {
-        left_undone(task, binding, objects, &before, now).is_none()
-    });
-    let failure = match followed {
-        Ok(()) => left_undone(task, binding, objects, &before, AppStage::new(app).sight()),
-        Err(failure) => Some((1, failure)),
-    };
-    Imitation {
-        steps_done: match failure {
-            Some((step, _)) => step.saturating_sub(1),
-            None => task.steps.len(),
-        },
-        corrections: 0,
-        failure,
-    }
 }

@@ -46,6 +46,14 @@ pub(super) fn cameras(text: &str) -> Result<Cameras, String> {
     Ok(Cameras(cameras))
 }
 
+/// Reads cameras, which may be `none`.
+pub(super) fn any_cameras(text: &str) -> Result<Cameras, String> {
+    match text.trim() {
+        "none" => Ok(Cameras(Vec::new())),
+        text => cameras(text),
+    }
+}
+
 /// Reads a camera as the options of the command line name it: `head`, `left_hand`, `above=0,-8,12` or `above=0,-8,12,0,0,1`.
 ///
 /// # Errors

@@ -15,7 +15,7 @@ use clap::{Args, ValueEnum};
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
-    cameras::{Cameras, cameras},
+    cameras::{Cameras, any_cameras},
     cut_off::say_if_cut_off,
     picture_size::picture_size,
     progress::ProgressLine,
@@ -48,8 +48,8 @@ pub(super) struct ExportArgs {
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = picture_size)]
     size: Option<(u32, u32)>,
     /// The cameras, separated by commas: `head`, hand cameras such as `left_hand`, and names with a location and, if it is not the centre of
-    /// the table, the point that they look at, in units of 10 cm: `side=14,0,8` or `side=14,0,8,0,0,1` [default: as recorded]
-    #[arg(long, value_name = "LIST", value_parser = cameras)]
+    /// the table, the point that they look at, in units of 10 cm: `side=14,0,8` or `side=14,0,8,0,0,1`; or `none` [default: as recorded]
+    #[arg(long, value_name = "LIST", value_parser = any_cameras)]
     cameras: Option<Cameras>,
     /// Write the pictures of a LeRobot dataset as videos (AV1), which are smaller and not quite the same
     #[arg(long)]

@@ -3,7 +3,7 @@
 use crate::{recorder::HandPictures, robot::RobotPlugin};
 use clap::Args;
 
-use super::{Failure, robot_options::layout_of};
+use super::Failure;
 
 #[derive(Args, Clone, Copy)]
 pub(super) struct HandCameraOption {
@@ -18,7 +18,7 @@ impl HandCameraOption {
     /// # Errors
     /// It has no such camera.
     pub fn of(self, robot: &RobotPlugin) -> Result<HandPictures, Failure> {
-        let layout = layout_of(robot);
+        let layout = robot.layout();
         match self.hand_cameras {
             false => Ok(HandPictures::None),
             true if layout.hand_cameras.is_empty() => Err(Failure::input(format!(

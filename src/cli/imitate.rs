@@ -9,38 +9,31 @@ use std::{
 
 use crate::{
     TabletopSimPlugins, headless_app_with,
-    imitation::{AppStage, SeeingStage, imitate_seeing, scattered_for},
-    multiplication::with_colors_exchanged,
-    planner::{
-        Before, Doing, Execution, ExecutionPace, Following, Imitation, PlanningStage as _,
-        RobotBody, imitate,
-    },
-    policy::{PicturePolicy, ThinkingTime, ToldTask, follow_policy, left_undone},
-    real::{BodyGuard, RealRobotPlugin},
+    planner::{Execution, Imitation},
+    policy::{ActingPolicy, Attempt, AttemptProgress},
+    real::{RealRobotPlugin, execute},
     recorder::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
         read_original, whole_recording,
     },
-    robot::RobotPlugin,
     robot_body, run_episodes,
     scene::{IdAllocator, assemble},
     scene_at_beginning,
     shipped::read_faultless_task,
     storage::{InnerPath, Storage},
-    task::{Binding, Requirements, Task},
+    task::{Binding, Task},
 };
 use bevy::prelude::*;
 use clap::Args;
-use tabletop_camera::Camera;
-use tabletop_controller::{RobotController, Sight};
+use tabletop_controller::RobotController;
 use tabletop_core::{
-    CameraCarrier, HeadCamera, ObjectSpec, RecordingCommand, RobotCommand, RobotLayout,
-    SceneCommand, SceneSpec, SimTick, StepApp as _, TICKS_PER_SECOND, Table, WriteCommand as _,
+    HeadCamera, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimTick, StepApp as _,
+    TICKS_PER_SECOND, WriteCommand as _,
 };
 
 use super::{
     Failure, Output,
-    acting_policy::{ActingPolicy, PolicyOptions, follow_motions, words_of},
+    acting_policy::PolicyOptions,
     allowed_paths::AllowedPaths,
     explain::{furniture, read},
     hand_cameras::HandCameraOption,
@@ -147,22 +140,24 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             (Some(seed), false) => InnerPath::numbered("", seed, "").below(folder),
             _ => folder.clone(),
         });
-        let attempt = Attempt {
-            task: &task,
-            requirements: &requirements,
-            scene: &scene,
-            body: &body,
-            robot: &robot,
+        let recorded = RecordedAttempt {
+            attempt: Attempt {
+                task: &task,
+                requirements: &requirements,
+                scene: &scene,
+                robot: &robot,
+                body: &body,
+                exchanges_colors: args.exchange_colors,
+                has_eyes: args.eyes,
+                policy: policy.as_ref(),
+                thinking: args.policy.thinking(),
+                seed,
+            },
             hand_pictures: &hand_pictures,
-            exchanges_colors: args.exchange_colors,
-            has_eyes: args.eyes,
-            policy: policy.as_ref(),
-            thinking: args.policy.thinking(),
             real: &args.real,
-            seed,
             folder,
         };
-        attempt.make_whole(is_single)
+        recorded.make_whole(is_single)
     };
     let mut trials = Vec::new();
     run_episodes(
@@ -213,39 +208,15 @@ fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
     scene_at_beginning(recording.session()).ok_or_else(unknown)
 }
 
-struct Attempt<'a> {
-    task: &'a Task,
-    requirements: &'a Requirements,
-    scene: &'a SceneSpec,
-    body: &'a RobotBody,
-    robot: &'a RobotPlugin,
+/// An attempt, and what becomes of it.
+struct RecordedAttempt<'a> {
+    attempt: Attempt<'a>,
     hand_pictures: &'a HandPictures,
-    exchanges_colors: bool,
-    has_eyes: bool,
-    policy: Option<&'a ActingPolicy>,
-    thinking: ThinkingTime,
     real: &'a DrivenOptions,
-    seed: Option<u64>,
     folder: Option<PathBuf>,
 }
 
-impl Attempt<'_> {
-    /// The policy that decides by pictures of the head camera.
-    fn picture_policy(&self) -> Option<&dyn PicturePolicy> {
-        self.policy?.picture_policy()
-    }
-
-    /// The camera by whose pictures a policy decides.
-    fn camera_of_policy(&self, table: &Table) -> Option<Camera> {
-        let mut head = HeadCamera::default();
-        self.picture_policy()?;
-        self.policy?.resize(&mut head);
-        if let Some(description) = &self.robot.description {
-            head.carrier = CameraCarrier::from(&description.layout);
-        }
-        Some(Camera::of_head(&head, table))
-    }
-
+impl RecordedAttempt<'_> {
     /// Makes it. Its recording appears whole; that of a real robot from its beginning, so that a kill costs nothing of it.
     fn make_whole(&self, is_reported: bool) -> Result<Trial, Failure> {
         let Some(folder) = self
@@ -263,27 +234,10 @@ impl Attempt<'_> {
 
     fn make(&self, folder: Option<&Path>, is_reported: bool) -> Result<Trial, Failure> {
         let start = Instant::now();
-        let scene = match self.exchanges_colors {
-            true => with_colors_exchanged(self.scene.clone(), self.seed.unwrap_or(0)),
-            false => self.scene.clone(),
-        };
-        let scene = match self.seed {
-            Some(seed) => {
-                let camera = self.camera_of_policy(&scene.table);
-                scattered_for(
-                    self.task,
-                    self.requirements,
-                    &scene,
-                    self.body,
-                    camera,
-                    seed,
-                )
-            }
-            None => Some(scene),
-        };
-        let Some(scene) = scene else {
+        let attempt = &self.attempt;
+        let Some(scene) = attempt.beginning() else {
             return Ok(Trial {
-                seed: self.seed,
+                seed: attempt.seed,
                 imitation: None,
                 report: RecordingReport::default(),
                 simulated: 0.0,
@@ -291,11 +245,11 @@ impl Attempt<'_> {
             });
         };
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
-        let binding = self
+        let binding = attempt
             .task
-            .bind(self.requirements, &objects)
+            .bind(attempt.requirements, &objects)
             .map_err(Failure::run)?;
-        let plugins = TabletopSimPlugins.build().set(self.robot.clone());
+        let plugins = TabletopSimPlugins.build().set(attempt.robot.clone());
         let plugins = match folder {
             Some(folder) => plugins.set(RecorderPlugin {
                 folder: folder.to_owned(),
@@ -305,7 +259,7 @@ impl Attempt<'_> {
             }),
             None => plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin),
         };
-        let real = self.real.connect(self.robot, &scene.table)?;
+        let real = self.real.connect(attempt.robot, &scene.table)?;
         let is_real = real.is_some();
         let mut app = headless_app_with(match is_real {
             true => plugins.add(RealRobotPlugin { is_paced: true }),
@@ -314,7 +268,7 @@ impl Attempt<'_> {
         if let Some(real) = real {
             real::stand_in(&mut app, real);
         }
-        if let Some(policy) = self.policy {
+        if let Some(policy) = attempt.policy {
             policy.resize(&mut app.world_mut().resource_mut::<HeadCamera>());
         }
         app.world_mut()
@@ -327,36 +281,34 @@ impl Attempt<'_> {
         }
         let imitation = match is_real {
             true => self.imitate_for_real(&mut app, &binding),
-            false => Ok(self.imitate(&mut app, &binding, &objects, is_reported)),
+            false => {
+                let mut tell = |progress: AttemptProgress<'_>| {
+                    if is_reported {
+                        tell(attempt.task, progress);
+                    }
+                };
+                Ok(attempt.perform(&mut app, &binding, &objects, &mut tell))
+            }
         };
         let recorded = recorded::finish(&mut app);
         real::release(&mut app);
         let (imitation, report) = (imitation?, recorded?);
         let ticks = app.world().resource::<SimTick>().0;
         Ok(Trial {
-            seed: self.seed,
+            seed: attempt.seed,
             imitation: Some(imitation),
             report,
             simulated: ticks as f64 / f64::from(TICKS_PER_SECOND),
             real: start.elapsed().as_secs_f64(),
         })
     }
-}
 
-impl Attempt<'_> {
     /// Lets the real robot do it at the pace of the wall clock. The simulated objects go with what the simulated grippers hold.
     fn imitate_for_real(&self, app: &mut App, binding: &Binding) -> Result<Imitation, Failure> {
-        let sight = Sight::of(app.world_mut());
-        let layout = app.world().resource::<RobotLayout>().clone();
-        let body = self.body.clone().guarded(BodyGuard::GAPS);
-        let task = self.task.clone();
-        let pace = ExecutionPace {
-            patience: Duration::ZERO,
-            following: Following::MACHINE,
-        };
-        let execution = Execution::begin(layout, body, task, binding.clone(), sight, 0, pace);
-        let execution = execution.map_err(|error| Failure::run(format!("planner: {error}")))?;
-        app.insert_resource(RobotController::new(execution));
+        let Attempt { task, body, .. } = self.attempt;
+        let (all, bound) = (task.clone(), binding.clone());
+        let begun = execute(app.world_mut(), body.clone(), all, bound, 0, Duration::ZERO);
+        begun.map_err(|error| Failure::run(format!("planner: {error}")))?;
         let mut told = None;
         loop {
             app.step(1);
@@ -367,7 +319,7 @@ impl Attempt<'_> {
             };
             let doing = execution.doing().filter(|doing| Some(*doing) != told);
             if let Some(doing) = doing {
-                self.tell(doing);
+                tell(task, AttemptProgress::Step(doing));
                 told = Some(doing);
             }
             if let Some(imitation) = execution.result() {
@@ -375,88 +327,23 @@ impl Attempt<'_> {
             }
         }
     }
+}
 
-    /// Says what is being done.
-    fn tell(&self, doing: Doing) {
-        let again = if doing.tries > 0 { " (again)" } else { "" };
-        let sentence = self.task.step(doing.step);
-        let sentence = sentence.map_or("", |step| step.sentence.as_str());
-        say(format_args!("{}. {sentence}{again}", doing.step));
-    }
-
-    fn imitate(
-        &self,
-        app: &mut App,
-        binding: &Binding,
-        objects: &[ObjectSpec],
-        is_reported: bool,
-    ) -> Imitation {
-        let (task, seed) = (self.task, self.seed.unwrap_or(0));
-        let tell = |doing: Doing| {
-            if is_reported {
-                self.tell(doing);
-            }
-        };
-        if let Some(ActingPolicy::Motions(policy)) = self.policy {
-            return follow_motions(policy, self.thinking, app, task, binding, objects);
+/// Says what is being done.
+fn tell(task: &Task, progress: AttemptProgress<'_>) {
+    match progress {
+        AttemptProgress::Step(doing) => {
+            let again = if doing.tries > 0 { " (again)" } else { "" };
+            let step = task.step(doing.step);
+            let sentence = step.map_or("", |step| step.sentence.as_str());
+            say(format_args!("{}. {sentence}{again}", doing.step));
         }
-        let Some(policy) = self.picture_policy() else {
-            return match self.has_eyes {
-                true => imitate_seeing(app, self.body, task, binding, objects, seed, tell),
-                false => {
-                    let mut stage = AppStage::new(app);
-                    imitate(&mut stage, self.body, task, binding, seed, tell)
-                }
-            };
-        };
-        let tell_move = |number: usize, object: &str, to: Vec3| {
-            if is_reported {
-                let [x, y, z] = to.to_array();
-                say(format_args!(
-                    "{number}. Put {object} at ({x:.2}, {y:.2}, {z:.2})."
-                ));
-            }
-        };
-        let words = words_of(task);
-        let told = ToldTask {
-            words: &words,
-            objects,
-        };
-        let most = 2 * task.steps.len();
-        let before = Before::anything(AppStage::new(app).sight());
-        let mut imitation = match self.has_eyes {
-            true => {
-                let mut stage = SeeingStage::of_task(app, self.body, task, binding, objects);
-                follow_policy(
-                    policy,
-                    self.thinking,
-                    &mut stage,
-                    self.body,
-                    &told,
-                    most,
-                    seed,
-                    tell_move,
-                )
-            }
-            false => {
-                let mut stage = AppStage::new(app);
-                follow_policy(
-                    policy,
-                    self.thinking,
-                    &mut stage,
-                    self.body,
-                    &told,
-                    most,
-                    seed,
-                    tell_move,
-                )
-            }
-        };
-        if imitation.failure.is_none() {
-            let now = AppStage::new(app).sight().clone();
-            imitation.failure = left_undone(task, binding, objects, &before, &now);
+        AttemptProgress::Move(number, object, to) => {
+            let [x, y, z] = to.to_array();
+            say(format_args!(
+                "{number}. Put {object} at ({x:.2}, {y:.2}, {z:.2})."
+            ));
         }
-        imitation
     }
 }
 

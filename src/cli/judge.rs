@@ -18,6 +18,7 @@ use crate::{
     },
     core::{RobotMode, TICKS_PER_SECOND},
     multiplication::Fingerprint,
+    policy::ActingPolicy,
     robot::RobotPlugin,
     run_episodes,
     storage::{Symlinks, read_regular_file},
@@ -28,13 +29,13 @@ use serde_json::{Value, json};
 
 use super::{
     Failure, Output,
-    acting_policy::{ActingPolicy, PolicyOptions},
+    acting_policy::PolicyOptions,
     jobs::at_a_time,
     multiply::refused,
     progress::ProgressLine,
     range::NumberRange,
     result_file::{ResultFile, ResultKind, require_outside},
-    robot_options::{RobotChoice, layout_of},
+    robot_options::RobotChoice,
     shard::ShardOption,
     wait::WaitOption,
 };
@@ -240,7 +241,7 @@ impl JudgeOptions {
         Ok(JudgementHeader {
             benchmark: BENCHMARK_VERSION.into(),
             program: env!("CARGO_PKG_VERSION").into(),
-            robot: layout_of(robot).name.clone(),
+            robot: robot.layout().name.clone(),
             dynamic: robot.mode == RobotMode::Dynamic,
             policy: name.display().to_string(),
             about,

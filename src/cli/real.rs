@@ -16,12 +16,7 @@ use bevy::prelude::*;
 use clap::Args;
 use serde_json::{Map, Value};
 
-use super::{
-    Failure,
-    range::NumberRange,
-    robot_options::{describe, layout_of},
-    terminal::say,
-};
+use super::{Failure, range::NumberRange, robot_options::describe, terminal::say};
 
 const SHARES: NumberRange<f64> = NumberRange::decimal(0.01, 1.0);
 
@@ -241,7 +236,7 @@ fn folder(robot: &RobotPlugin) -> Option<&Path> {
 }
 
 fn profile(address: &Address, robot: &RobotPlugin) -> Result<BridgeProfile, Failure> {
-    interface_of(address, folder(robot), layout_of(robot)).map_err(Failure::input)
+    interface_of(address, folder(robot), robot.layout()).map_err(Failure::input)
 }
 
 /// The pictures of the head camera, if the robot has one that shows them.

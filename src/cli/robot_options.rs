@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    core::{RobotCommand, RobotLayout, RobotMode, WriteCommand as _},
+    core::{RobotCommand, RobotMode, WriteCommand as _},
     robot::{Description, RobotPlugin},
     robots::read_robot,
     script::{
@@ -61,14 +61,6 @@ pub(super) fn robot_of(file: Option<&Path>) -> Result<RobotPlugin, Failure> {
         description: file.map(describe).transpose()?,
         ..default()
     })
-}
-
-/// What is known of a robot's joints, limbs and cameras.
-pub(super) fn layout_of(robot: &RobotPlugin) -> &RobotLayout {
-    match &robot.description {
-        Some(description) => &description.layout,
-        None => RobotLayout::baxter(),
-    }
 }
 
 impl RobotOptions {

@@ -121,7 +121,7 @@ impl RunArgs {
             scenario.begin_with(&true_path(setup));
         }
         let robot = self.real.body(self.robot.plugin()?)?;
-        let checked = scenario.check_for(layout_of(&robot));
+        let checked = scenario.check_for(robot.layout());
         checked.map_err(Failure::input)?;
         Ok((scenario, robot))
     }

@@ -10,8 +10,7 @@ from lerobot.robots.robot import Robot
 
 import tabletop
 from tabletop.cameras import camera_list, camera_name
-from tabletop.grip import pressed
-from tabletop.joint_env import TICKS_PER_SECOND
+from tabletop.joint_env import TICKS_PER_SECOND, ticks_per_step
 
 from .robot_config import TabletopRobotConfig
 
@@ -24,9 +23,8 @@ class TabletopRobot(Robot):
 
     def __init__(self, config: TabletopRobotConfig):
         super().__init__(config)
-        if config.fps <= 0 or TICKS_PER_SECOND % config.fps:
-            raise tabletop.Error(f"fps: expected a divisor of {TICKS_PER_SECOND}, found {config.fps}")
         self.config = config
+        self._ticks = ticks_per_step(config.fps)
         # LeRobot counts them.
         self.cameras = {camera_name(camera): camera for camera in camera_list(config.views)}
         self.world: tabletop.World | None = None
@@ -85,12 +83,7 @@ class TabletopRobot(Robot):
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         world = self._connected()
         there = {joint: float(action[self._key(joint)]) * self._unit(joint) for joint in self._joints}
-        here = world.robot.joints
-        for limb in world.robot.limbs.values():
-            gripper = limb.gripper
-            there[gripper] = pressed(there[gripper], here[gripper], bool(limb.holds))
-        ticks = TICKS_PER_SECOND // self.config.fps
-        for left in range(ticks, 0, -1):
+        for left in range(self._ticks, 0, -1):
             here = world.robot.joints
             speeds = {joint: (there[joint] - here[joint]) * TICKS_PER_SECOND / left for joint in self._joints}
             world.robot.drive(speeds, "velocity")

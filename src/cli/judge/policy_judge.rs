@@ -15,7 +15,7 @@ use crate::{
     headless_app_with,
     imitation::AppStage,
     planner::{PlanFailure, PlanningStage as _, RobotBody},
-    policy::{DrivenTask, ThinkingTime, ToldTask, follow_actions, follow_policy},
+    policy::{ActingPolicy, DrivenTask, ThinkingTime, ToldTask, follow_actions, follow_policy},
     recorder::{RecorderPlugin, SessionHeader, UnrecordedPlugin},
     robot::RobotPlugin,
     robot_body,
@@ -23,9 +23,7 @@ use crate::{
 use bevy::prelude::*;
 use serde_json::{Map, Value, json};
 
-use crate::cli::{
-    Failure, acting_policy::ActingPolicy, multiply::refused, recorded, robot_options::layout_of,
-};
+use crate::cli::{Failure, multiply::refused, recorded};
 
 /// Number of ticks after which a scene is at rest.
 const SETTLING: u64 = 30;
@@ -56,7 +54,7 @@ impl<'a> PolicyJudge<'a> {
             policy,
             thinking,
             body: robot_body(&robot, &Table::default()).map_err(Failure::run)?,
-            carrier: CameraCarrier::from(layout_of(&robot)),
+            carrier: CameraCarrier::from(robot.layout()),
             robot,
             header,
             collection,

@@ -116,11 +116,11 @@ pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use requirement::require;
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
-    Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, GripperKind,
-    GripperLayout, HandCameraLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole,
-    JointState, LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame,
-    MANUAL_SPEED, Markers, MeasuredJoint, NameError, Obstacle, Robot, RobotContact, RobotJoint,
-    RobotLayout, RobotMode, UrdfJoint, WIDEST_GRIP, snake_case,
+    Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, FINGER_SPEED, Face, FingerLook,
+    GripperKind, GripperLayout, HandCameraLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName,
+    JointRole, JointState, LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState,
+    LinkFrame, MANUAL_SPEED, Markers, MeasuredJoint, NameError, Obstacle, Robot, RobotContact,
+    RobotJoint, RobotLayout, RobotMode, UrdfJoint, WIDEST_GRIP, snake_case,
 };
 pub use rollback::Rollback;
 pub use ron_fault::{located_ron_fault, ron_fault};

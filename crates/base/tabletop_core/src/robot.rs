@@ -25,6 +25,9 @@ use crate::TICK_SECONDS;
 /// Speed of manual control, in rad/s, and units/s for what slides (report section 5.1).
 pub const MANUAL_SPEED: f64 = 1.0;
 
+/// Speed at which fingers close and open where nobody moves them by hand, in units/s of their opening.
+pub const FINGER_SPEED: f64 = 2.0;
+
 /// A command to a joint. Angles in rad, ways of joints that slide in m, openings of grippers in units, times in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drive {

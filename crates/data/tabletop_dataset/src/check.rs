@@ -84,7 +84,8 @@ pub fn check(
                 findings.place.clone_from(&episode.folder);
                 find_no_words(&episode.task, &mut findings);
                 jumps_between_frames(&episode, &mut findings);
-                let values = episode.state.values.iter().chain(&episode.action.values);
+                let state = episode.whole_state();
+                let values = state.values.iter().chain(&episode.action.values);
                 let numbers: Vec<u8> = values
                     .flat_map(|value| value.to_bits().to_le_bytes())
                     .collect();

@@ -99,7 +99,10 @@ pub fn statistics(
         }
         DatasetContent::LeRobot(reader) => reader.visit_tables(|_, episode| {
             add("episode [s]", episode.len() as f64 / f64::from(episode.fps));
-            for (kind, signal) in [("state", &episode.state), ("action", &episode.action)] {
+            for (kind, signal) in [
+                ("state", &episode.whole_state()),
+                ("action", &episode.action),
+            ] {
                 for frame in signal.frames() {
                     for (name, value) in signal.names.iter().zip(frame) {
                         add(&format!("{kind} {name}"), f64::from(*value));

@@ -145,7 +145,8 @@ fn acts(command: &SimCommand) -> bool {
 
 /// An episode without the frames at its ends that are like their neighbours.
 fn trim_episode(episode: TrainingEpisode) -> TrainingEpisode {
-    let frames: Vec<_> = episode.state.frames().collect();
+    let state = episode.whole_state();
+    let frames: Vec<_> = state.frames().collect();
     let changes: Vec<_> = (1..frames.len())
         .filter(|&frame| frames[frame] != frames[frame - 1])
         .collect();
@@ -175,7 +176,11 @@ fn sliced(mut episode: TrainingEpisode, from: usize, until: usize) -> TrainingEp
         .iter()
         .map(|tick| SimTick(tick.0 - first.0))
         .collect();
-    for signal in [&mut episode.state, &mut episode.action] {
+    for signal in [
+        &mut episode.state,
+        &mut episode.environment,
+        &mut episode.action,
+    ] {
         let width = signal.names.len();
         signal.values = signal.values[from * width..until * width].to_vec();
     }

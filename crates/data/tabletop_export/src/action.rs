@@ -43,11 +43,12 @@ pub(crate) fn hand_motions(
     signal
 }
 
-/// The motion of each end effector from one frame to the next, as for hands, and the opening of its gripper in the next frame, in units.
-/// `joints` has the positions of all joints in each frame.
+/// The motion of each end effector from one frame to the next, as for hands, and the opening that its gripper is ordered to have in the next
+/// frame, in units. `joints` has the positions of all joints in each frame, `orders` those that they were ordered to have.
 pub(crate) fn end_effector_motions(
     replay: &Replay,
     joints: &FrameVectors,
+    orders: &FrameVectors,
 ) -> Result<FrameVectors, ExportError> {
     let unfit = |problem: String| ExportError::Unfit {
         recording: replay.folder().to_owned(),
@@ -76,7 +77,8 @@ pub(crate) fn end_effector_motions(
         .take(layout.limbs.len())
         .map(|limb| {
             let is_its = |role| role == JointRole::Gripper(LimbId(limb));
-            layout.joints.iter().position(|joint| is_its(joint.role))
+            let joint = layout.joints.iter().position(|joint| is_its(joint.role))?;
+            columns.get(joint).copied()
         })
         .collect();
     let names = layout
@@ -92,19 +94,23 @@ pub(crate) fn end_effector_motions(
         .frames()
         .map(|frame| {
             let positions: Positions = columns.iter().map(|i| f64::from(frame[*i])).collect();
-            let posture = articulation.posture(&positions, base);
-            (positions, posture.end_effectors().to_vec())
+            articulation
+                .posture(&positions, base)
+                .end_effectors()
+                .to_vec()
         })
         .collect();
-    for (frame, (_, end_effectors)) in postures.iter().enumerate() {
-        let (positions, next) = postures.get(frame + 1).unwrap_or(&postures[frame]);
-        for ((from, to), opening) in end_effectors.iter().zip(next).zip(&openings) {
+    let last = postures.len().saturating_sub(1);
+    let orders: Vec<_> = orders.frames().collect();
+    for (frame, end_effectors) in postures.iter().enumerate() {
+        let next = (frame + 1).min(last);
+        for ((from, to), opening) in end_effectors.iter().zip(&postures[next]).zip(&openings) {
             let [way, turn] = motion(*from, *to);
             signal.values.extend(way.to_array());
             signal.values.extend(turn.to_array());
             signal
                 .values
-                .extend(opening.map(|joint| positions[joint] as f32));
+                .extend(opening.map(|column| orders[next][column]));
         }
     }
     Ok(signal)

@@ -17,8 +17,10 @@ pub struct TrainingEpisode {
     pub fps: u32,
     /// The ticks whose ends the frames show.
     pub ticks: Vec<SimTick>,
-    /// The state at each frame.
+    /// The state at each frame: of the robot's joints, or of the objects.
     pub state: FrameVectors,
+    /// The poses of the objects at each frame, beside a state that has them not; no numbers if they were not asked for.
+    pub environment: FrameVectors,
     /// The action from each frame to the next.
     pub action: FrameVectors,
     /// The kind of action.
@@ -107,6 +109,11 @@ impl TrainingEpisode {
     pub fn is_empty(&self) -> bool {
         self.ticks.is_empty()
     }
+
+    /// The state and, after it, the poses of the objects, at each frame.
+    pub fn whole_state(&self) -> FrameVectors {
+        self.state.beside(&self.environment)
+    }
 }
 
 impl CameraTrack {
@@ -133,5 +140,21 @@ impl FrameVectors {
     /// The numbers of each frame.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = &[f32]> {
         self.values.chunks_exact(self.names.len().max(1))
+    }
+
+    /// This signal and another one, frame by frame one after the other. One without numbers has no frames, either.
+    pub fn beside(&self, other: &Self) -> Self {
+        match (self.names.is_empty(), other.names.is_empty()) {
+            (_, true) => return self.clone(),
+            (true, false) => return other.clone(),
+            (false, false) => {}
+        }
+        let names = self.names.iter().chain(&other.names).cloned().collect();
+        let frames = self.frames().zip(other.frames());
+        let values = frames.flat_map(|(one, other)| one.iter().chain(other));
+        Self {
+            names,
+            values: values.copied().collect(),
+        }
     }
 }

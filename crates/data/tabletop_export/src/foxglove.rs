@@ -115,9 +115,10 @@ fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, McapError> {
     let mut transforms = file.topic::<FrameTransforms>("/tf")?;
     let mut scene = file.topic::<SceneUpdate>("/scene")?;
     let mut log = file.topic::<Log>("/log")?;
+    let state = episode.whole_state();
     let mut signals = Vec::new();
     for (topic, name, signal) in [
-        ("/state", "tabletop.State", &episode.state),
+        ("/state", "tabletop.State", &state),
         ("/action", "tabletop.Action", &episode.action),
     ] {
         let message = SignalMessage::new(name, signal);

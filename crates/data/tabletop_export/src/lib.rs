@@ -24,6 +24,7 @@ mod feature_stats;
 mod format;
 mod foxglove;
 mod foxglove_messages;
+mod grip_track;
 mod hand_track;
 mod image;
 mod lerobot;

@@ -32,7 +32,10 @@ fn file_of(episode: &TrainingEpisode) -> Result<Vec<u8>, MatError> {
     file.write_char("task", &episode.task)?;
     let ticks: Vec<f64> = episode.ticks.iter().map(|tick| tick.0 as f64).collect();
     file.write_f64("ticks", &[frames, 1], &ticks)?;
-    for (name, signal) in [("state", &episode.state), ("action", &episode.action)] {
+    for (name, signal) in [
+        ("state", &episode.whole_state()),
+        ("action", &episode.action),
+    ] {
         file.write_f32(name, &[frames, signal.names.len()], &by_columns(signal))?;
         file.write_char(&format!("{name}_names"), &signal.names.join("\n"))?;
     }

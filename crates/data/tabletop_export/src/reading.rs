@@ -13,6 +13,7 @@ use crate::{
     camera_track::{filmed_cameras, recorded_cameras},
     episode::{EncodedVideo, FrameVectors, ObjectTrack, Subtask, TrainingEpisode},
     error::ExportError,
+    grip_track::GripTrack,
     hand_track::{HANDS, HandTrack},
     selection::{ActionKind, EpisodeSelection, StateKind},
 };
@@ -40,7 +41,7 @@ impl TrainingEpisode {
         let hands = HandTrack::all(&shown);
         let state = match selection.state {
             Some(kind) => kind,
-            None if robot_acts => StateKind::Both,
+            None if robot_acts => StateKind::Robot,
             None => StateKind::Objects,
         };
         let action = match selection.action {
@@ -49,24 +50,40 @@ impl TrainingEpisode {
             None => ActionKind::Hands,
         };
         let objects = object_tracks(&shown, &ticks);
-        let state = match state {
-            StateKind::Robot => joints.clone(),
-            StateKind::Objects => object_state(&shown, &objects, &hands, &ticks),
-            StateKind::Both => beside(&joints, &object_state(&shown, &objects, &hands, &ticks)),
+        let (state, environment) = match state {
+            StateKind::Robot => (joints.clone(), FrameVectors::default()),
+            StateKind::Objects => {
+                let poses = object_poses(&objects, ticks.len());
+                let hands = hand_states(&shown, &hands, &ticks);
+                (poses.beside(&hands), FrameVectors::default())
+            }
+            StateKind::Both => (joints.clone(), object_poses(&objects, ticks.len())),
         };
         let action_kind = action;
         let mut replay = None;
+        let grips = GripTrack::of(&shown);
+        let mut orders = || match grips.grips() {
+            true => {
+                let replay = replay_of(&mut replay, folder, selection)?;
+                Ok(grips.orders(&joints, replay.robot().layout(), &ticks))
+            }
+            false => Ok(joints.clone()),
+        };
         let action = match action {
             ActionKind::Hands => hand_motions(&shown, &hands, &ticks),
-            ActionKind::Joints => shifted(&joints),
+            ActionKind::Joints => shifted(&orders()?),
             ActionKind::EndEffectors => {
+                let orders = orders()?;
                 let replay = replay_of(&mut replay, folder, selection)?;
-                end_effector_motions(replay, &joints)?
+                end_effector_motions(replay, &joints, &orders)?
             }
         };
-        let mut cameras = match pictures.are_recorded(recorded_fps) {
-            true => recorded_cameras(&recording, ticks.len())?,
-            false => {
+        let mut cameras = match &pictures.cameras {
+            Some(cameras) if cameras.is_empty() => Vec::new(),
+            None if pictures.are_recorded(recorded_fps) => {
+                recorded_cameras(&recording, ticks.len())?
+            }
+            Some(_) | None => {
                 let replay = replay_of(&mut replay, folder, selection)?;
                 filmed_cameras(replay, &shown, pictures, &ticks)?
             }
@@ -90,6 +107,7 @@ impl TrainingEpisode {
             folder: folder.to_owned(),
             fps,
             state,
+            environment,
             action,
             action_kind,
             objects,
@@ -166,34 +184,14 @@ fn shifted(signal: &FrameVectors) -> FrameVectors {
     }
 }
 
-/// Two signals, frame by frame one after the other.
-fn beside(one: &FrameVectors, other: &FrameVectors) -> FrameVectors {
-    let names = one.names.iter().chain(&other.names).cloned().collect();
-    let mut both = FrameVectors::new(names);
-    for (one, other) in one.frames().zip(other.frames()) {
-        both.values.extend(one);
-        both.values.extend(other);
-    }
-    both
-}
-
-/// Pose of every object, in the order of their creation, and place and grip of the hands. An object that is not there has no rotation: all of its
-/// numbers are 0.
-fn object_state(
-    shown: &Demonstration,
-    objects: &[ObjectTrack],
-    hands: &[HandTrack; 2],
-    ticks: &[SimTick],
-) -> FrameVectors {
+/// The pose of every object, in the order of their creation. An object that is not there has no rotation: all of its numbers are 0.
+fn object_poses(objects: &[ObjectTrack], frames: usize) -> FrameVectors {
     let parts = ["x", "y", "z", "qx", "qy", "qz", "qw"];
-    let of_objects = objects
+    let names = objects
         .iter()
         .flat_map(|object| parts.map(|part| format!("{}.{part}", object.spec.id)));
-    let of_hands = HANDS
-        .iter()
-        .flat_map(|(hand, _)| ["x", "y", "z", "grip"].map(|part| format!("{hand}_hand.{part}")));
-    let mut signal = FrameVectors::new(of_objects.chain(of_hands).collect());
-    for (frame, &tick) in ticks.iter().enumerate() {
+    let mut signal = FrameVectors::new(names.collect());
+    for frame in 0..frames {
         for object in objects {
             match object.poses[frame] {
                 Some(pose) => {
@@ -203,10 +201,20 @@ fn object_state(
                 None => signal.values.extend([0.0; 7]),
             }
         }
+    }
+    signal
+}
+
+/// Place and grip of each hand.
+fn hand_states(shown: &Demonstration, hands: &[HandTrack; 2], ticks: &[SimTick]) -> FrameVectors {
+    let names = HANDS
+        .iter()
+        .flat_map(|(hand, _)| ["x", "y", "z", "grip"].map(|part| format!("{hand}_hand.{part}")));
+    let mut signal = FrameVectors::new(names.collect());
+    for &tick in ticks {
         for hand in hands {
-            signal
-                .values
-                .extend(hand.pose(shown, tick).location.to_array());
+            let location = hand.pose(shown, tick).location;
+            signal.values.extend(location.to_array());
             signal.values.push(hand.grip(tick));
         }
     }

@@ -96,14 +96,9 @@ impl Robomimic {
         root.create_dataset(&format!("{name}/actions"), |set| {
             set.with_f64_data(&actions).with_shape(&[frames, width]);
         })?;
-        let states: Vec<f64> = episode
-            .state
-            .values
-            .iter()
-            .copied()
-            .map(f64::from)
-            .collect();
-        let width = episode.state.names.len() as u64;
+        let state = episode.whole_state();
+        let states: Vec<f64> = state.values.iter().copied().map(f64::from).collect();
+        let width = state.names.len() as u64;
         root.create_dataset(&format!("{name}/states"), |set| {
             set.with_f64_data(&states).with_shape(&[frames, width]);
         })?;
@@ -142,10 +137,11 @@ impl Robomimic {
         let root = self.file.root();
         root.create_group(name)?;
         let frames = shown.len() as u64;
-        let width = episode.state.names.len();
+        let state = episode.whole_state();
+        let width = state.names.len();
         let states = shown
             .iter()
-            .flat_map(|frame| &episode.state.values[frame * width..][..width]);
+            .flat_map(|frame| &state.values[frame * width..][..width]);
         let states: Vec<_> = states.copied().collect();
         root.create_dataset(&format!("{name}/state"), |set| {
             set.with_f32_data(&states)
@@ -317,7 +313,7 @@ fn env_args(episode: &TrainingEpisode) -> String {
         "type": 2,
         "env_kwargs": {
             "fps": episode.fps,
-            "state_names": episode.state.names,
+            "state_names": episode.whole_state().names,
             "action_names": episode.action.names,
             "action_scale": scale(episode),
         },

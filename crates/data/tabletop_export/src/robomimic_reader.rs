@@ -126,6 +126,7 @@ impl ColumnMeaning {
                 names: self.state.clone(),
                 values: state,
             },
+            environment: FrameVectors::default(),
             action: FrameVectors {
                 names: self.action.clone(),
                 values: actions

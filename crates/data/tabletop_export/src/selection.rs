@@ -7,7 +7,7 @@ use tabletop_camera::CameraSpec;
 /// The choice of what an episode holds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EpisodeSelection {
-    /// The state; `None` for that of what acts.
+    /// The state; `None` for that of what acts: the robot if one of its joints moves, otherwise the objects.
     pub state: Option<StateKind>,
     /// The action; `None` for that of what acts: the robot if one of its joints moves, otherwise the hands.
     pub action: Option<ActionKind>,
@@ -26,7 +26,7 @@ pub struct PictureSelection {
     pub fps: Option<u32>,
     /// Columns and rows; `None` for those of the recording.
     pub size: Option<[u32; 2]>,
-    /// The cameras; `None` for those of the recording.
+    /// The cameras, possibly none; `None` for those of the recording.
     pub cameras: Option<Vec<CameraSpec>>,
     /// Encodes them as a video, too.
     pub has_video: bool,
@@ -43,7 +43,7 @@ pub enum StateKind {
     Robot,
     /// Poses of the objects, and places and grips of the hands.
     Objects,
-    /// Those of the robot, then those of the objects.
+    /// Positions of the robot's joints, and beside them the poses of the objects.
     Both,
 }
 
@@ -52,9 +52,10 @@ pub enum StateKind {
 pub enum ActionKind {
     /// The motion of each hand until the next frame: along X, Y and Z in units, about them in rad, and 1 while it holds something.
     Hands,
-    /// The positions of the robot's joints in the next frame.
+    /// The positions that the robot's joints are ordered to have in the next frame: where they are then, and closed fingers while they hold something.
     Joints,
-    /// The motion of each end effector until the next frame, as for hands, and the opening of its gripper in the next frame, in units.
+    /// The motion of each end effector until the next frame, as for hands, and the opening that its gripper is ordered to have
+    /// in the next frame, in units.
     EndEffectors,
 }
 

@@ -23,7 +23,9 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod acting;
+mod acting_policy;
 mod adam;
+mod attempt;
 mod convolution;
 mod curriculum;
 mod driven_task;
@@ -54,6 +56,8 @@ mod training;
 mod unet;
 
 pub use acting::{follow_policy, left_undone};
+pub use acting_policy::ActingPolicy;
+pub use attempt::{Attempt, AttemptProgress};
 pub use curriculum::Curriculum;
 pub use driven_task::DrivenTask;
 pub use driving::follow_actions;

@@ -1,7 +1,7 @@
 //! Motion of an arm and its gripper, tick by tick.
 
 use tabletop_controller::{Angles, Sight};
-use tabletop_core::TICK_SECONDS;
+use tabletop_core::{FINGER_SPEED, TICK_SECONDS};
 
 use crate::{
     body::RobotBody,
@@ -9,8 +9,6 @@ use crate::{
     stage::{LimbOrder, PlanningStage, Stopped},
 };
 
-/// Speed of fingers, in units/s.
-const FINGER_SPEED: f64 = 2.0;
 /// Number of ticks without progress after which an arm counts as stopped.
 const PATIENCE: u32 = 20;
 /// Largest number of ticks for a motion of fingers.

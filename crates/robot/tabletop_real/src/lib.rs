@@ -8,6 +8,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod body_guard;
+mod execution;
 mod interface;
 mod mirror;
 mod orders;
@@ -23,6 +24,7 @@ use tabletop_core::{
 };
 
 pub use body_guard::BodyGuard;
+pub use execution::execute;
 pub use interface::{find_interface, interface_of, shipped_body};
 pub use robot::{RealLink, RealRobot, head_pictures};
 pub use sentinel::sentinel_command;

@@ -29,6 +29,16 @@ pub struct RobotPlugin {
     pub mode: RobotMode,
 }
 
+impl RobotPlugin {
+    /// What is known of its joints, limbs and cameras.
+    pub fn layout(&self) -> &RobotLayout {
+        match &self.description {
+            Some(description) => &description.layout,
+            None => RobotLayout::baxter(),
+        }
+    }
+}
+
 impl Plugin for RobotPlugin {
     fn build(&self, app: &mut App) {
         let description = match self

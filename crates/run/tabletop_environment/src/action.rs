@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{
     Drive, JointId, JointName, LimbId, MANUAL_SPEED, Robot, RobotCommand, RobotLayout,
-    WriteCommand as _, step_world,
+    TICK_SECONDS, WriteCommand as _, step_world,
 };
 use tabletop_geometry::{Pose, turn_about};
 use tabletop_robot::reach_nearby;
@@ -17,7 +17,8 @@ const LONGEST_DELTA: (f32, f32) = (0.1, 0.1);
 pub enum ActionSpace {
     /// The velocity of each joint of the limbs, limb by limb from the base, up to 1 rad/s; then of each gripper's opening, up to 1 unit/s.
     JointVelocity,
-    /// The position of the same joints and openings between their limits, which they approach at 1 rad/s and 1 unit/s.
+    /// The position of the same joints and openings between their limits, which they reach at the end of the step, evenly, or as far as their
+    /// [`travel_speed`](tabletop_core::JointLayout::travel_speed) takes them.
     JointPosition,
     /// For each limb the displacement of its end effector along x, y and z, up to 0.1 units a step, its turn about the vertical, up to 0.1 rad a
     /// step, and the velocity of its gripper's opening, up to 1 unit/s. An end effector keeps its other angles.
@@ -65,55 +66,52 @@ fn driven(layout: &RobotLayout) -> impl Iterator<Item = JointId> {
     joints.chain(layout.limbs.iter().map(|limb| limb.gripper.joint))
 }
 
-/// What the actions of an episode have ordered so far.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct ActionOrders {
-    /// The joints that actions move, with their limits.
-    joints: Vec<(JointName, [f64; 2])>,
-    /// The poses to which end effectors were sent.
-    targets: Vec<Pose>,
+/// Simulates these ticks with the velocities of an action.
+pub(crate) fn move_at(world: &mut World, action: &[f32], ticks: u64) {
+    let layout = world.resource::<RobotLayout>();
+    let joints = driven(layout).map(|joint| layout.joint(joint));
+    let velocities = joints.zip(action).map(|(joint, &share)| {
+        let velocity = f64::from(share) * joint.manual_speed();
+        (joint.name, Drive::Velocity(velocity))
+    });
+    let drives = velocities.collect();
+    drive_for(world, drives, ticks);
 }
 
-impl ActionOrders {
-    /// No orders, to a robot at rest.
+/// Simulates these ticks on the way to the positions of an action.
+pub(crate) fn move_to(world: &mut World, action: &[f32], ticks: u64) {
+    for left in (1..=ticks).rev() {
+        let time = left as f64 * f64::from(TICK_SECONDS);
+        let (layout, robot) = (world.resource::<RobotLayout>(), world.resource::<Robot>());
+        let drives = driven(layout).zip(action).map(|(id, &share)| {
+            let joint = layout.joint(id);
+            let [low, high] = joint.limits;
+            let there = low + (high - low) * (f64::from(share) + 1.0) / 2.0;
+            let velocity = (there - robot.joint(id).position) / time;
+            let speed = joint.travel_speed();
+            (joint.name, Drive::Velocity(velocity.clamp(-speed, speed)))
+        });
+        let drives = drives.collect();
+        world.write_command(RobotCommand::Drive(drives));
+        step_world(world, 1);
+    }
+}
+
+/// The poses to which the actions of an episode have sent the end effectors.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EndEffectorTargets(Vec<Pose>);
+
+impl EndEffectorTargets {
+    /// Those of a robot at rest.
     pub fn new(world: &World) -> Self {
-        let layout = world.resource::<RobotLayout>();
-        let joints = driven(layout).map(|joint| layout.joint(joint));
         let limbs = world.resource::<Robot>().limbs.iter();
-        Self {
-            joints: joints.map(|joint| (joint.name, joint.limits)).collect(),
-            targets: limbs.map(|limb| limb.end_effector).collect(),
-        }
-    }
-
-    /// Simulates these ticks with the velocities of an action.
-    pub fn move_at(&self, world: &mut World, action: &[f32], ticks: u64) {
-        let layout = world.resource::<RobotLayout>();
-        let joints = driven(layout).map(|joint| layout.joint(joint));
-        let velocities = joints.zip(action).map(|(joint, &share)| {
-            let velocity = f64::from(share) * joint.manual_speed();
-            (joint.name, Drive::Velocity(velocity))
-        });
-        let drives = velocities.collect();
-        drive_for(world, drives, ticks);
-    }
-
-    /// Simulates these ticks on the way to the positions of an action.
-    pub fn move_to(&self, world: &mut World, action: &[f32], ticks: u64) {
-        let positions = self.joints.iter().zip(action);
-        let drives = positions.map(|(&(name, [low, high]), &share)| {
-            let position = low + (high - low) * (f64::from(share) + 1.0) / 2.0;
-            (name, Drive::Toward(position))
-        });
-        world.write_command(RobotCommand::Drive(drives.collect()));
-        step_world(world, ticks);
+        Self(limbs.map(|limb| limb.end_effector).collect())
     }
 
     /// Simulates these ticks with end effectors displaced by an action. One that cannot get there stays where it is.
     pub fn move_by(&mut self, world: &mut World, action: &[f32], ticks: u64) {
         let mut grippers = Vec::new();
-        for (number, (target, action)) in self.targets.iter_mut().zip(action.chunks(5)).enumerate()
-        {
+        for (number, (target, action)) in self.0.iter_mut().zip(action.chunks(5)).enumerate() {
             let &[x, y, z, turn, opening] = action else {
                 continue;
             };

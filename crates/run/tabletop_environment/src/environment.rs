@@ -17,7 +17,7 @@ use tabletop_scene::{IdAllocator, assemble};
 use tabletop_sim::{remember_beginning, reset};
 
 use crate::{
-    action::{ActionOrders, ActionSpace},
+    action::{ActionSpace, EndEffectorTargets, move_at, move_to},
     error::EnvironmentError,
     goal::EpisodeGoal,
     observation::{ObservationSpace, StateLayout},
@@ -142,7 +142,7 @@ struct EpisodeState {
     goal: EpisodeGoal,
     judge: Judge,
     verdicts: Vec<Verdict>,
-    orders: ActionOrders,
+    targets: EndEffectorTargets,
     has_begun: bool,
     steps: u64,
     /// The distance from the goal, of which the dense reward is the decrease.
@@ -259,7 +259,7 @@ impl TaskEnvironment {
         self.world.take_facts();
         self.episode = EpisodeState {
             goal: plan.goal,
-            orders: ActionOrders::new(self.world.world()),
+            targets: EndEffectorTargets::new(self.world.world()),
             has_begun: true,
             ..EpisodeState::default()
         };
@@ -321,11 +321,13 @@ impl TaskEnvironment {
         }
         let before = self.world.tick();
         let ticks = self.options.ticks_per_step;
-        let (world, orders) = (&mut self.world, &mut self.episode.orders);
+        let (world, targets) = (&mut self.world, &mut self.episode.targets);
         match self.options.action {
-            ActionSpace::JointVelocity => orders.move_at(world.world_mut(), &self.action, ticks),
-            ActionSpace::JointPosition => orders.move_to(world.world_mut(), &self.action, ticks),
-            ActionSpace::EndEffectorDelta => orders.move_by(world.world_mut(), &self.action, ticks),
+            ActionSpace::JointVelocity => move_at(world.world_mut(), &self.action, ticks),
+            ActionSpace::JointPosition => move_to(world.world_mut(), &self.action, ticks),
+            ActionSpace::EndEffectorDelta => {
+                targets.move_by(world.world_mut(), &self.action, ticks)
+            }
             ActionSpace::PickPlace => pick_and_place(world, &self.action),
         }
         self.world.take_facts();

@@ -10,7 +10,7 @@ use tabletop_geometry::{Pose, UNITS_PER_METER};
 use crate::{
     HandCamera, Table,
     robot::{
-        MANUAL_SPEED,
+        FINGER_SPEED, MANUAL_SPEED,
         name::{JointName, LimbName},
     },
 };
@@ -103,6 +103,15 @@ impl JointLayout {
         match self.slides {
             true => MANUAL_SPEED / UNITS_PER_METER,
             false => MANUAL_SPEED,
+        }
+    }
+
+    /// Its speed when it goes where it is sent, in rad/s or m/s, and in units/s for a gripper's opening: that of its motor, if the layout says so.
+    pub fn travel_speed(&self) -> f64 {
+        match self.role {
+            JointRole::Gripper(_) => FINGER_SPEED,
+            JointRole::Limb { .. } | JointRole::Neck if self.speed > 0.0 => self.speed,
+            JointRole::Limb { .. } | JointRole::Neck => self.manual_speed(),
         }
     }
 

@@ -33,11 +33,12 @@ pub(super) fn jumps_between_ticks(rows: &[StateRow], findings: &mut Findings) {
 
 /// Finds jumps from frame to frame of the state of objects.
 pub(super) fn jumps_between_frames(episode: &TrainingEpisode, findings: &mut Findings) {
-    let names = episode.state.names.iter().enumerate();
+    let state = episode.whole_state();
+    let names = state.names.iter().enumerate();
     let objects: Vec<_> = names
         .filter_map(|(place, name)| Some((place.checked_sub(3)?, name.strip_suffix(".qx")?)))
         .collect();
-    let frames: Vec<_> = episode.state.frames().collect();
+    let frames: Vec<_> = state.frames().collect();
     for (number, two) in frames.windows(2).enumerate() {
         for (place, id) in &objects {
             let pose = |frame: &[f32]| frame.get(*place..place + 7).map(<[f32]>::to_vec);

@@ -72,6 +72,7 @@ pub fn episode(task: &str) -> TrainingEpisode {
         fps: 4,
         ticks: vec![SimTick(0), SimTick(15)],
         state: signal("x", [number.into(), 1.0]),
+        environment: FrameVectors::default(),
         action: signal("right_hand.grip", [0.0, 1.0]),
         action_kind: ActionKind::Hands,
         objects: Vec::new(),

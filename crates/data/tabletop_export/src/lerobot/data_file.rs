@@ -13,7 +13,7 @@ use tabletop_storage::StoredFile;
 use super::{
     columns::{self, Column},
     episode_table::EpisodeRow,
-    info::{feature_of_camera, feature_of_depth, feature_of_ids},
+    info::{feature_of_camera, feature_of_depth, feature_of_ids, signals_of},
     language,
     place::{DataPlace, MOST_FILE_BYTES},
     table::{batch, properties, schema_of},
@@ -110,14 +110,9 @@ fn failed(path: &Path, error: ParquetError) -> ExportError {
 /// The columns of an episode's frames.
 fn columns_of(episode: &TrainingEpisode, row: &EpisodeRow, has_language: bool) -> Vec<Column> {
     let frames = episode.len();
-    let mut columns = vec![
-        columns::vectors(
-            "observation.state",
-            episode.state.names.len(),
-            &episode.state.values,
-        ),
-        columns::vectors("action", episode.action.names.len(), &episode.action.values),
-    ];
+    let signals = signals_of(episode)
+        .map(|(name, signal)| columns::vectors(name, signal.names.len(), &signal.values));
+    let mut columns: Vec<_> = signals.collect();
     for camera in episode
         .cameras
         .iter()

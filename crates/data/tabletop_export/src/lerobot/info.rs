@@ -8,7 +8,7 @@ use tabletop_storage::{InnerFile, InnerPath};
 
 use super::place::{FILES_PER_CHUNK, MOST_FILE_BYTES};
 use crate::{
-    episode::{CameraTrack, EncodedVideo, TrainingEpisode},
+    episode::{CameraTrack, EncodedVideo, FrameVectors, TrainingEpisode},
     error::ExportError,
 };
 
@@ -200,10 +200,7 @@ impl Info {
 /// The features of an episode, in the order of their columns.
 fn features_of(episode: &TrainingEpisode, has_language: bool) -> Map<String, Value> {
     let mut features = Map::new();
-    for (name, signal) in [
-        ("observation.state", &episode.state),
-        ("action", &episode.action),
-    ] {
+    for (name, signal) in signals_of(episode) {
         features.insert(
             name.into(),
             json!({ "dtype": "float32", "shape": [signal.names.len()], "names": signal.names }),
@@ -248,6 +245,27 @@ fn features_of(episode: &TrainingEpisode, has_language: bool) -> Map<String, Val
         features.insert(name.into(), counter);
     }
     features
+}
+
+/// The feature of a frame's state.
+pub(super) const STATE: &str = "observation.state";
+/// The feature of the poses of the objects beside it.
+pub(super) const ENVIRONMENT: &str = "observation.environment_state";
+/// The feature of the action from a frame to the next.
+pub(super) const ACTION: &str = "action";
+
+/// The features of an episode that are numbers for each frame.
+pub(super) fn signals_of(
+    episode: &TrainingEpisode,
+) -> impl Iterator<Item = (&'static str, &FrameVectors)> {
+    let signals = [
+        (STATE, &episode.state),
+        (ENVIRONMENT, &episode.environment),
+        (ACTION, &episode.action),
+    ];
+    let is_there =
+        |(name, signal): &(&str, &FrameVectors)| *name != ENVIRONMENT || !signal.names.is_empty();
+    signals.into_iter().filter(is_there)
 }
 
 /// The feature of a camera's pictures.

@@ -15,7 +15,7 @@ use super::{
     commit::{Commit, PendingCommit},
     dataset_videos::DatasetVideos,
     episode_rows::EpisodeRows,
-    info::{Info, feature_of_camera, feature_of_depth, feature_of_ids},
+    info::{ACTION, ENVIRONMENT, Info, STATE, feature_of_camera, feature_of_depth, feature_of_ids},
     place::{DataPlace, FileSeries},
     read_columns::{column, rows_of, whole_numbers},
     table_file::TableFile,
@@ -43,6 +43,7 @@ pub struct LeRobotReader {
 /// The columns of an episode that have names.
 struct Names {
     state: Vec<String>,
+    environment: Vec<String>,
     action: Vec<String>,
     cameras: Vec<String>,
 }
@@ -137,15 +138,16 @@ impl LeRobotReader {
         DatasetVideos::open(&self.folder, features, self.fps())
     }
 
-    /// The names of the numbers of a frame's state.
+    /// The names of the numbers of a frame's state, and of the poses beside it.
     pub fn state_names(&self) -> Vec<String> {
-        self.names().state
+        let names = self.names();
+        [names.state, names.environment].concat()
     }
 
     fn names(&self) -> Names {
         let features = self.info.features();
         let names = |feature: &str| {
-            let names = features[feature]["names"].as_array();
+            let names = features.get(feature).and_then(|it| it["names"].as_array());
             let names = names.into_iter().flatten();
             names
                 .filter_map(|name| name.as_str().map(str::to_owned))
@@ -153,14 +155,9 @@ impl LeRobotReader {
         };
         let cameras = features.keys().filter_map(|name| name.strip_prefix(CAMERA));
         Names {
-            state: match features.contains_key("observation.state") {
-                true => names("observation.state"),
-                false => Vec::new(),
-            },
-            action: match features.contains_key("action") {
-                true => names("action"),
-                false => Vec::new(),
-            },
+            state: names(STATE),
+            environment: names(ENVIRONMENT),
+            action: names(ACTION),
             cameras: cameras.map(str::to_owned).collect(),
         }
     }
@@ -274,8 +271,12 @@ impl LeRobotReader {
             folder: InnerPath::numbered("episode ", number as u64, "").below(&self.folder),
             fps: self.fps(),
             ticks: ticks_of(frames, self.fps()).collect(),
-            state: vectors(batch, "observation.state", &names.state)?,
-            action: vectors(batch, "action", &names.action)?,
+            state: vectors(batch, STATE, &names.state)?,
+            environment: match names.environment.is_empty() {
+                true => FrameVectors::default(),
+                false => vectors(batch, ENVIRONMENT, &names.environment)?,
+            },
+            action: vectors(batch, ACTION, &names.action)?,
             action_kind: match names.action.iter().any(is_hand) {
                 true => ActionKind::Hands,
                 false => ActionKind::Joints,

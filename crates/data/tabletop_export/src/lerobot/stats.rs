@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, path::Path, sync::Arc};
 use serde_json::{Map, Value, json};
 use tabletop_storage::{InnerFile, InnerPath};
 
-use super::info::{Info, feature_of_camera};
+use super::info::{Info, feature_of_camera, signals_of};
 use crate::{
     episode::{CameraTrack, FrameVectors, TrainingEpisode},
     error::ExportError,
@@ -72,10 +72,8 @@ impl FeatureStats {
 
 /// The statistics of an episode's states, actions and pictures.
 pub(super) fn of_episode(episode: &TrainingEpisode) -> BTreeMap<String, FeatureStats> {
-    let mut all = BTreeMap::from([
-        ("observation.state".to_owned(), of_signal(&episode.state)),
-        ("action".to_owned(), of_signal(&episode.action)),
-    ]);
+    let signals = signals_of(episode).map(|(name, signal)| (name.to_owned(), of_signal(signal)));
+    let mut all: BTreeMap<_, _> = signals.collect();
     for camera in &episode.cameras {
         all.insert(feature_of_camera(&camera.name), of_pictures(camera));
     }

@@ -15,6 +15,8 @@ use super::{
 use crate::error::ExportError;
 
 const PATH: &str = "meta/tasks.parquet";
+/// The column of an index to which pandas knows no name: LeRobot's recorder gives it none.
+const NAMELESS_INDEX: &str = "__index_level_0__";
 
 /// The table of these sentences. Without pandas' own description, readers take numbers for the index and the sentences are lost.
 pub(super) fn write(tasks: &[String]) -> Result<Vec<u8>, ExportError> {
@@ -67,6 +69,7 @@ pub(super) fn read(folder: &Path) -> Result<Vec<String>, ExportError> {
         let numbers = batch.column_by_name("task_index");
         let numbers = numbers.and_then(|column| column.as_primitive_opt::<Int64Type>());
         let sentences = batch.column_by_name("task");
+        let sentences = sentences.or_else(|| batch.column_by_name(NAMELESS_INDEX));
         let sentences = sentences.and_then(|column| column.as_string_opt::<i32>());
         let (Some(numbers), Some(sentences)) = (numbers, sentences) else {
             return Err(fault("expected the columns task_index and task"));

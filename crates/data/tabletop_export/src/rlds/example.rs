@@ -36,7 +36,7 @@ fn example_of(episode: &TrainingEpisode) -> RldsExample {
     example.floats("episode_metadata/fps", [episode.fps as f32]);
     example.floats(
         "steps/observation/state",
-        episode.state.values.iter().copied(),
+        episode.whole_state().values.iter().copied(),
     );
     example.floats("steps/action", episode.action.values.iter().copied());
     example.numbers("steps/is_first", flag(&|frame| frame == 0));

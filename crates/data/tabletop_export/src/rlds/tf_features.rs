@@ -9,7 +9,7 @@ const MODULE: &str = "tensorflow_datasets.core.features";
 /// The features of an episode.
 pub(super) fn features_of(episode: &TrainingEpisode) -> Value {
     let mut observation = Map::new();
-    observation.insert("state".into(), vector(&episode.state));
+    observation.insert("state".into(), vector(&episode.whole_state()));
     for camera in &episode.cameras {
         let size = camera.images.first();
         let size = size.map_or([0, 0], |image| [image.height, image.width]);

@@ -1,10 +1,12 @@
 //! Datasets, read back: numbers and pictures are those that were written.
 
-use std::{fs, path::Path};
+use std::{fs, path::Path, sync::Arc};
 
+use arrow::array::{Array, Int64Array, RecordBatch, StringArray};
+use parquet::arrow::ArrowWriter;
 use tabletop_export::{
     DatasetFormat as _, EpisodeSelection, ExportError, LeRobot, LeRobotReader, PictureSelection,
-    Robomimic, TrainingEpisode, read_robomimic,
+    Robomimic, StateKind, TrainingEpisode, read_robomimic,
 };
 
 use crate::demonstration::{alone, episode, fresh, recording};
@@ -209,4 +211,67 @@ fn a_robomimic_file_reads_back_equal() {
     for read in &read {
         is_same_in_numbers(read, &episode());
     }
+}
+
+/// The joints of the robot, and beside them the poses of the objects, without pictures.
+fn poses() -> TrainingEpisode {
+    let selection = EpisodeSelection {
+        state: Some(StateKind::Both),
+        pictures: PictureSelection {
+            cameras: Some(Vec::new()),
+            ..PictureSelection::default()
+        },
+        ..EpisodeSelection::default()
+    };
+    TrainingEpisode::read(recording(), &selection).unwrap()
+}
+
+#[test]
+fn poses_are_a_feature_of_their_own_for_lerobot_and_part_of_the_state_elsewhere() {
+    let written = poses();
+    assert!(written.cameras.is_empty());
+    let of_red = [
+        "Red.x", "Red.y", "Red.z", "Red.qx", "Red.qy", "Red.qz", "Red.qw",
+    ];
+    assert_eq!(written.environment.names[..7], of_red);
+    let folder = fresh("lerobot_poses");
+    let mut dataset = LeRobot::open(folder.clone(), &alone()).unwrap();
+    dataset.write(LeRobot::prepare(poses()).unwrap()).unwrap();
+    dataset.finish().unwrap();
+    let reader = LeRobotReader::open(&folder).unwrap();
+    assert_eq!(reader.state_names(), written.whole_state().names);
+    let visit = |read: TrainingEpisode| {
+        is_same_in_numbers(&read, &written);
+        assert_eq!(read.environment, written.environment);
+        Ok::<_, ExportError>(())
+    };
+    reader.visit(visit).unwrap();
+
+    let path = fresh("robomimic_poses.hdf5");
+    let mut file = Robomimic::open(path.clone(), &alone()).unwrap();
+    file.write(Robomimic::prepare(poses()).unwrap()).unwrap();
+    file.finish().unwrap();
+    assert_eq!(
+        read_robomimic(&path).unwrap()[0].state,
+        written.whole_state()
+    );
+}
+
+/// Its tasks are the index of a table, to which it gives no name.
+#[test]
+fn the_tasks_of_lerobots_recorder_are_read() {
+    let folder = fresh("lerobot_nameless_tasks");
+    let mut dataset = LeRobot::open(folder.clone(), &alone()).unwrap();
+    dataset.write(LeRobot::prepare(episode()).unwrap()).unwrap();
+    dataset.finish().unwrap();
+    let numbers: Arc<dyn Array> = Arc::new(Int64Array::from(vec![0, 1]));
+    let sentences: Arc<dyn Array> = Arc::new(StringArray::from(vec!["Lift it.", "Drop it."]));
+    let columns = [("task_index", numbers), ("__index_level_0__", sentences)];
+    let batch = RecordBatch::try_from_iter(columns).unwrap();
+    let file = fs::File::create(folder.join("meta/tasks.parquet")).unwrap();
+    let mut writer = ArrowWriter::try_new(file, batch.schema(), None).unwrap();
+    writer.write(&batch).unwrap();
+    writer.close().unwrap();
+    let reader = LeRobotReader::open(&folder).unwrap();
+    assert_eq!(reader.tasks(), ["Lift it.", "Drop it."]);
 }

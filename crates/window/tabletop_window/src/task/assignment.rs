@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use bevy::prelude::*;
-use tabletop_controller::{RobotController, Sight};
-use tabletop_core::{ObjectIndex, ObjectSpec, RobotLayout, Table};
+use tabletop_controller::Sight;
+use tabletop_core::{ObjectIndex, ObjectSpec, Table};
 use tabletop_episodes::telling::{TellFailure, table_of};
-use tabletop_planner::{Execution, ExecutionPace, Following, PlanFailure, RobotBody, goal_poses};
+use tabletop_planner::{PlanFailure, RobotBody, goal_poses};
 use tabletop_program::{NextAttempt, ProgramAttempts, StepAttempt, TaskProgram};
-use tabletop_real::{BodyGuard, RealRobot};
+use tabletop_real::execute;
 use tabletop_robot::Description;
 use tabletop_task::{Binding, Task};
 use tabletop_user::{Ghost, ImitatedStep};
@@ -170,11 +170,6 @@ fn begun(world: &mut World, task: Task, binding: Binding, seed: u64) -> Result<B
         &table.unwrap_or_default(),
     );
     let body = body.map_err(|error| error.to_string())?;
-    let is_real = world.contains_resource::<RealRobot>();
-    let body = match is_real {
-        true => body.guarded(BodyGuard::GAPS),
-        false => body,
-    };
     let sight = Sight::of(world);
     let ghosts = goal_poses(&task, &binding, &sight);
     let ghosts = ghosts.into_iter().filter_map(|(step, id, pose)| {
@@ -187,16 +182,7 @@ fn begun(world: &mut World, task: Task, binding: Binding, seed: u64) -> Result<B
         Some((step, ghost))
     });
     let ghosts = ghosts.collect();
-    let layout = world.resource::<RobotLayout>().clone();
-    let pace = ExecutionPace {
-        patience: PATIENCE,
-        following: match is_real {
-            true => Following::MACHINE,
-            false => Following::EXACT,
-        },
-    };
-    let execution = Execution::begin(layout, body, task.clone(), binding, sight, seed, pace);
-    let execution = execution.map_err(|error| error.to_string())?;
-    world.insert_resource(RobotController::new(execution));
+    let begun = execute(world, body, task.clone(), binding, seed, PATIENCE);
+    begun.map_err(|error| error.to_string())?;
     Ok(BegunTask { task, ghosts })
 }

@@ -1,0 +1,110 @@
+//! The times in which grippers hold something.
+
+use std::collections::BTreeSet;
+
+use tabletop_core::{JointRole, LimbName, Manipulator, RobotLayout, SimTick};
+use tabletop_task::{ActDeed, Demonstration};
+
+use crate::episode::FrameVectors;
+
+/// What the grippers of a robot hold in an episode.
+pub(crate) struct GripTrack {
+    /// From each tick on, the grippers that hold something.
+    holding: Vec<(SimTick, BTreeSet<LimbName>)>,
+}
+
+impl GripTrack {
+    pub fn of(shown: &Demonstration) -> Self {
+        let mut held: BTreeSet<(LimbName, &str)> = BTreeSet::new();
+        let mut holding = Vec::new();
+        for act in &shown.acts {
+            let Manipulator::Gripper(limb) = act.by else {
+                continue;
+            };
+            match &act.deed {
+                ActDeed::Grasp(object) => drop(held.insert((limb, object))),
+                ActDeed::Release(Some(object)) => drop(held.remove(&(limb, object.as_str()))),
+                ActDeed::Release(None) | ActDeed::Destroy => held.retain(|(by, _)| *by != limb),
+            }
+            holding.push((act.tick, held.iter().map(|(limb, _)| *limb).collect()));
+        }
+        Self { holding }
+    }
+
+    /// True if a gripper holds something at any time.
+    pub fn grips(&self) -> bool {
+        !self.holding.is_empty()
+    }
+
+    /// True if the gripper of a limb holds something at the end of a tick.
+    fn holds(&self, limb: LimbName, tick: SimTick) -> bool {
+        let changes = self.holding.partition_point(|(at, _)| *at <= tick);
+        changes > 0 && self.holding[changes - 1].1.contains(&limb)
+    }
+
+    /// The positions that joints were ordered to have in each frame, by those that they had: fingers that hold something were to close entirely.
+    pub fn orders(
+        &self,
+        joints: &FrameVectors,
+        layout: &RobotLayout,
+        ticks: &[SimTick],
+    ) -> FrameVectors {
+        let mut orders = joints.clone();
+        let width = orders.names.len();
+        for joint in &layout.joints {
+            let JointRole::Gripper(limb) = joint.role else {
+                continue;
+            };
+            let Some(column) = joints
+                .names
+                .iter()
+                .position(|name| joint.name.as_str() == name)
+            else {
+                continue;
+            };
+            let limb = layout.limb(limb).name;
+            for (frame, tick) in orders.values.chunks_mut(width).zip(ticks) {
+                if self.holds(limb, *tick) {
+                    frame[column] = joint.limits[0] as f32;
+                }
+            }
+        }
+        orders
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::LimbId;
+    use tabletop_task::ShownAct;
+
+    use super::*;
+
+    #[test]
+    fn fingers_that_hold_something_are_ordered_to_close_entirely() {
+        let layout = RobotLayout::baxter();
+        let limb = layout.limb(LimbId(1));
+        let joint = layout.joint(limb.gripper.joint);
+        let act = |tick, deed| ShownAct {
+            tick: SimTick(tick),
+            by: Manipulator::Gripper(limb.name),
+            deed,
+        };
+        let shown = Demonstration {
+            acts: vec![
+                act(5, ActDeed::Grasp("Red".into())),
+                act(15, ActDeed::Release(Some("Red".into()))),
+            ],
+            ..Demonstration::default()
+        };
+        let joints = FrameVectors {
+            names: vec!["right_s0".into(), joint.name.to_string()],
+            values: vec![0.5, 0.9, 0.5, 0.4, 0.5, 0.6],
+        };
+        let grips = GripTrack::of(&shown);
+        let ticks = [0, 10, 20].map(SimTick);
+        let orders = grips.orders(&joints, layout, &ticks);
+        assert_eq!(orders.values, [0.5, 0.9, 0.5, 0.0, 0.5, 0.6]);
+        assert!(grips.grips());
+    }
+}
