@@ -62,12 +62,12 @@ impl TrainingEpisode {
         let action_kind = action;
         let mut replay = None;
         let grips = GripTrack::of(&shown);
-        let mut orders = || match grips.grips() {
-            true => {
-                let replay = replay_of(&mut replay, folder, selection)?;
-                Ok(grips.orders(&joints, replay.robot().layout(), &ticks))
+        let mut orders = || -> Result<FrameVectors, ExportError> {
+            if !grips.grips() {
+                return Ok(joints.clone());
             }
-            false => Ok(joints.clone()),
+            let replay = replay_of(&mut replay, folder, selection)?;
+            Ok(grips.orders(&joints, replay.robot().layout(), &ticks))
         };
         let action = match action {
             ActionKind::Hands => hand_motions(&shown, &hands, &ticks),
