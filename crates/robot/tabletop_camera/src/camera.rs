@@ -1,17 +1,19 @@
 //! Cameras: their poses, fields of view and rays.
 
+mod four;
 mod linear;
 
 use std::ops::Range;
 
 use bevy::{
-    math::{Mat3, Vec2, Vec3, Vec4},
+    math::{Vec2, Vec3, Vec4},
     prelude::Quat,
 };
 use tabletop_core::{HandCamera, HeadCamera, Light, Table};
 use tabletop_geometry::Pose;
 
-pub(crate) use linear::{Linear, OnRow, Rays, SampleOffset};
+pub(crate) use four::{FourTurned, FourVectors, transposed};
+pub(crate) use linear::{FourLinear, Linear, OnRow, Rays, SampleOffset};
 
 /// Nearest visible distance in units, along the axis of view (report section 4, "head camera").
 pub(crate) const NEAR: f32 = 0.01;
@@ -94,6 +96,8 @@ pub(crate) struct PinholeView {
     pub width: u32,
     pub height: u32,
     pub rays: Rays,
+    /// Largest distance of a pixel's samples from its centre, to the right and down, in pixels.
+    pub reach: f32,
     axes: Quat,
     pixel: Vec2,
     center: Vec2,
@@ -129,6 +133,10 @@ impl PinholeView {
                 right,
                 down,
             },
+            reach: match camera.antialiasing {
+                true => SampleOffset::REACH,
+                false => 0.0,
+            },
             axes,
             pixel,
             center,
@@ -136,11 +144,14 @@ impl PinholeView {
     }
 
     /// Its bits, which identify it.
-    pub fn bits(&self) -> [u32; 11] {
+    pub fn bits(&self) -> [u32; 12] {
         let ([x, y, z], [a, b, c, d]) = (self.eye.to_array(), self.axes.to_array());
         let [right, down] = self.pixel.to_array();
         let size = [self.width, self.height].map(|count| count as f32);
-        [x, y, z, a, b, c, d, right, down, size[0], size[1]].map(f32::to_bits)
+        [
+            x, y, z, a, b, c, d, right, down, size[0], size[1], self.reach,
+        ]
+        .map(f32::to_bits)
     }
 
     /// The pixel of a point given relative to the eye.
@@ -150,19 +161,20 @@ impl PinholeView {
 
     /// The pixels, as columns and rows, of points given in the frame of a body, four at a time. They are NaN for points that are not in front of
     /// the camera.
-    pub fn pixels_of(&self, body: Pose) -> impl Fn([Vec4; 3]) -> [Vec4; 2] {
+    pub fn pixels_of(&self, body: Pose) -> impl Fn(FourVectors) -> [Vec4; 2] {
         let to_camera = self.axes.inverse();
         let turned = FourTurned::by(to_camera * body.rotation);
-        let origin = to_camera * (body.location - self.eye);
-        let origin = origin.to_array().map(Vec4::splat);
-        let [center, pixel] = [self.center, self.pixel].map(|it| it.to_array().map(Vec4::splat));
+        let origin = FourVectors::splat(to_camera * (body.location - self.eye));
+        let [center, pixel] = [self.center, self.pixel];
         move |points| {
-            let [x, y, z] = turned.apply(points);
-            let depth = -(z + origin[2]);
-            let column = (x + origin[0]) / (depth * pixel[0]) + center[0];
-            let row = -(y + origin[1]) / (depth * pixel[1]) + center[1];
+            let FourVectors { x, y, z } = turned.apply(points) + origin;
+            let depth = -z;
+            let column = x / (depth * pixel.x) + center.x;
+            let row = -y / (depth * pixel.y) + center.y;
             let is_in_front = depth.cmpge(Vec4::splat(NEAR));
-            [column, row].map(|at| Vec4::select(is_in_front, at, Vec4::NAN))
+            let column = Vec4::select(is_in_front, column, Vec4::NAN);
+            let row = Vec4::select(is_in_front, row, Vec4::NAN);
+            [column, row]
         }
     }
 
@@ -201,10 +213,31 @@ impl PinholeView {
         (!window.columns.is_empty() && !window.rows.is_empty()).then_some(window)
     }
 
+    /// False if nothing within the convex hull of these points, given relative to the eye, can be seen.
+    pub fn may_see(&self, [near, far]: &[FourVectors; 2]) -> bool {
+        let edge = (self.center + REACH) * self.pixel;
+        let to_camera = FourTurned::by(self.axes.inverse());
+        let farthest = Vec4::splat(FARTHEST);
+        let [near, far] = [near, far].map(|points| {
+            let FourVectors { x, y, z } = to_camera.apply(*points);
+            let (depth, right, top) = (-z, edge.x * -z, edge.y * -z);
+            let is_beyond = [
+                depth.cmplt(Vec4::splat(NEAR)),
+                x.cmpgt(right),
+                (-x).cmpgt(right),
+                y.cmpgt(top),
+                (-y).cmpgt(top),
+            ];
+            let size = x.abs().max(y.abs()).max(depth.abs());
+            (is_beyond, size.cmplt(farthest).all())
+        });
+        let is_beside = (near.0.into_iter().zip(far.0)).any(|(near, far)| (near & far).all());
+        let has_pixels = self.width > 0 && self.height > 0;
+        has_pixels && near.1 && far.1 && !is_beside
+    }
+
     /// True if all of these points, given relative to the eye, lie beyond the same edge of the picture, in front of the camera or behind it.
     pub fn is_beside(&self, points: &[Vec3]) -> bool {
-        /// Reach of the outermost samples beyond the middle of the outermost pixels, with room for rounding.
-        const REACH: f32 = 1.0;
         let edge = (self.center + REACH) * self.pixel;
         let to_camera = self.axes.inverse();
         let beyond = points.iter().map(|&point| {
@@ -214,23 +247,6 @@ impl PinholeView {
             right.bitmask() | left.bitmask() << 2
         });
         beyond.fold(0b1111, |common, beyond| common & beyond) != 0
-    }
-}
-
-/// A rotation of vectors, four at a time, given by their parts along X, Y and Z.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FourTurned([[Vec4; 3]; 3]);
-
-impl FourTurned {
-    pub fn by(rotation: Quat) -> Self {
-        let axes = Mat3::from_quat(rotation).to_cols_array_2d();
-        Self(axes.map(|axis| axis.map(Vec4::splat)))
-    }
-
-    #[inline]
-    pub fn apply(&self, [x, y, z]: [Vec4; 3]) -> [Vec4; 3] {
-        let [along_x, along_y, along_z] = self.0;
-        std::array::from_fn(|i| x * along_x[i] + y * along_y[i] + z * along_z[i])
     }
 }
 
@@ -286,6 +302,9 @@ impl PictureWindow {
         self.columns.start as usize..self.columns.end as usize
     }
 }
+
+/// Reach of the outermost samples beyond the middle of the outermost pixels, with room for rounding, in pixels.
+const REACH: f32 = 1.0;
 
 /// Largest distance along an axis, in units, of a corner that is drawn: beyond it, numbers are too coarse.
 const FARTHEST: f32 = 1e9;
@@ -379,7 +398,11 @@ mod tests {
             body.inverse() * (view.eye - view.rays.through(0.0, 0.0)),
         ];
         let part = |axis: usize| Vec4::from_array(points.map(|point| point[axis]));
-        let [columns, rows] = view.pixels_of(body)([part(0), part(1), part(2)]);
+        let [columns, rows] = view.pixels_of(body)(FourVectors {
+            x: part(0),
+            y: part(1),
+            z: part(2),
+        });
         for (lane, point) in points.into_iter().enumerate() {
             match camera.pixel_of(body * point) {
                 Some(pixel) => {

@@ -10,6 +10,7 @@ mod kept;
 mod layers;
 mod lighting;
 mod polyhedra;
+mod projection;
 mod quadric;
 mod resolve;
 mod samples;
@@ -99,7 +100,7 @@ impl Rasterizer {
             is_smooth: camera.antialiasing,
         };
         let width = camera.width as usize;
-        (self.kept).compare(scene, &self.visible, &view, camera.antialiasing);
+        self.kept.compare(scene, &self.visible, &view);
         if self.kept.is_whole() {
             self.kept.copy_to(picture);
             return;

@@ -10,6 +10,7 @@ use tabletop_core::{Figure, Table};
 use tabletop_geometry::{Pose, Primitive, Rgb, Solid};
 
 pub use facets::Facets;
+pub(crate) use facets::FourPlanes;
 pub(crate) use shared_facets::facets_of;
 
 /// A scene for a camera.

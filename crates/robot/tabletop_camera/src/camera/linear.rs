@@ -4,6 +4,8 @@ use std::ops::{Add, Mul};
 
 use bevy::math::{Vec3, Vec4};
 
+use super::four::{FourVectors, transposed};
+
 /// Offset of a row of samples from their pixels' centres, in pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SampleOffset {
@@ -75,6 +77,16 @@ impl Rays {
         }
     }
 
+    /// The scalar product of each ray with each of four vectors.
+    #[inline]
+    pub fn four_dots(&self, vectors: FourVectors) -> FourLinear {
+        FourLinear {
+            first: vectors.dot(FourVectors::splat(self.first)),
+            right: vectors.dot(FourVectors::splat(self.right)),
+            down: vectors.dot(FourVectors::splat(self.down)),
+        }
+    }
+
     /// The scalar product of each ray with a vector.
     pub fn dot(&self, vector: Vec3) -> Linear {
         Linear {
@@ -119,6 +131,38 @@ impl Linear {
             step: self.right,
         }
     }
+
+    /// Its values along four rows of samples.
+    #[inline]
+    pub fn on_rows(&self, rows: Vec4, offset: SampleOffset) -> [OnRow<f32>; 4] {
+        let first = self.first + self.down * (rows + offset.y) + self.right * offset.x;
+        first.to_array().map(|first| OnRow {
+            first,
+            step: self.right,
+        })
+    }
+}
+
+/// Four numbers that depend linearly on the point of the picture, each a lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FourLinear {
+    pub first: Vec4,
+    pub right: Vec4,
+    pub down: Vec4,
+}
+
+impl FourLinear {
+    /// Each of them.
+    #[inline]
+    pub fn each(&self) -> [Linear; 4] {
+        let [a, b, c, d] = transposed([self.first, self.right, self.down, self.down]);
+        let linear = |parts: Vec4| Linear {
+            first: parts.x,
+            right: parts.y,
+            down: parts.z,
+        };
+        [linear(a), linear(b), linear(c), linear(d)]
+    }
 }
 
 /// A linear function of a sample's column in its row.
@@ -133,5 +177,13 @@ impl<T: Copy + Add<Output = T> + Mul<f32, Output = T>> OnRow<T> {
     #[inline]
     pub fn at(&self, column: f32) -> T {
         self.first + self.step * column
+    }
+}
+
+impl OnRow<f32> {
+    /// Its values at four columns.
+    #[inline]
+    pub fn at_four(&self, columns: Vec4) -> Vec4 {
+        self.first + self.step * columns
     }
 }

@@ -13,7 +13,7 @@ use crate::{
         face::ROWS,
         resolve::{Pixels, RowResolver},
         samples::{CenterSamples, SmoothOnRow, SmoothSamples},
-        span::{Sees, SpanList},
+        span::{Sees, Span, SpanList},
         transparent::{Blend, TransparentSpheres},
         visible::VisibleSurfaces,
     },
@@ -33,20 +33,15 @@ pub(crate) struct Frame<'a> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Band {
     coverages: Vec<Coverage>,
-    rows: Vec<BandRow>,
+    /// The faces that the pixels of each row see.
+    faces: Vec<SpanList>,
+    /// The columns that may see more than faces, from the left.
+    dense: Vec<Range<u32>>,
     centers: CenterSamples,
     smooth: SmoothSamples,
     /// One row of one sample a pixel.
     single: CenterSamples,
     blend: Blend,
-}
-
-/// A row of the band.
-#[derive(Clone, Debug, Default)]
-struct BandRow {
-    faces: SpanList,
-    /// The pixels that may see more than faces.
-    dense: Range<u32>,
 }
 
 impl Band {
@@ -56,7 +51,7 @@ impl Band {
         let count = pixels.depth.len() / width;
         let rows = first_row..first_row + count as u32;
         self.find_faces(frame, rows.clone());
-        self.find_dense(frame, rows.clone());
+        self.find_dense(frame, &rows);
         self.sample_surfaces(frame, rows.clone());
         for (row, mut pixels) in rows.zip(pixels.parts(width)) {
             let i = (row - first_row) as usize;
@@ -68,9 +63,8 @@ impl Band {
     /// Finds the nearest surface at every sample of these whole rows, at most [`ROWS`].
     pub fn sample(&mut self, frame: &Frame, rows: Range<u32>) -> (&CenterSamples, &SmoothSamples) {
         self.find_faces(frame, rows.clone());
-        for row in &mut self.rows {
-            row.dense = 0..frame.view.width;
-        }
+        self.dense.clear();
+        self.dense.push(0..frame.view.width);
         self.sample_surfaces(frame, rows);
         (&self.centers, &self.smooth)
     }
@@ -92,7 +86,7 @@ impl Band {
     /// Finds the faces that parts of the rows see.
     fn find_faces(&mut self, frame: &Frame, rows: Range<u32>) {
         let Frame { view, visible, .. } = *frame;
-        self.rows.resize_with(ROWS, BandRow::default);
+        self.faces.resize_with(ROWS, SpanList::default);
         self.coverages.clear();
         for (number, face) in (0..).zip(&visible.faces) {
             if face.rows.start < rows.end && rows.start < face.rows.end {
@@ -100,7 +94,7 @@ impl Band {
                 self.coverages.push(coverage);
             }
         }
-        for (row, BandRow { faces, .. }) in rows.zip(&mut self.rows) {
+        for (row, faces) in rows.zip(&mut self.faces) {
             faces.clear(view.width);
             for added in self.coverages.iter().filter_map(|face| face.in_row(row)) {
                 faces.insert(&added, row, frame.is_smooth, |face| {
@@ -110,21 +104,14 @@ impl Band {
         }
     }
 
-    /// Finds the pixels that may see more than faces.
-    fn find_dense(&mut self, frame: &Frame, rows: Range<u32>) {
-        for row in &mut self.rows {
-            row.dense = 0..0;
-        }
+    /// Finds the columns that may see more than faces.
+    fn find_dense(&mut self, frame: &Frame, rows: &Range<u32>) {
+        self.dense.clear();
         let quadrics = frame.visible.quadrics.iter().map(|quadric| &quadric.window);
         let figures = frame.visible.figure_windows();
         for window in quadrics.chain(figures).chain(frame.spheres.windows()) {
-            let Range { start, end } = window.columns;
-            for row in rows_of(window, &rows) {
-                let dense = &mut self.rows[(row - rows.start) as usize].dense;
-                *dense = match dense.start == dense.end {
-                    true => start..end,
-                    false => dense.start.min(start)..dense.end.max(end),
-                };
+            if !rows_of(window, rows).is_empty() {
+                join(&mut self.dense, window.columns.clone());
             }
         }
     }
@@ -132,25 +119,21 @@ impl Band {
     /// Finds the nearest face at each sample that has to be known.
     fn sample_faces(&mut self, frame: &Frame, row: u32, first_row: u32) {
         let i = (row - first_row) as usize;
-        let dense = self.rows[i].dense.clone();
         let mut centers = self.centers.center_row(i);
-        for span in self.rows[i].faces.spans() {
+        for span in self.faces[i].spans() {
             match span.sees {
                 Sees::Face(face) => {
-                    let columns = span.start.max(dense.start)..span.end.min(dense.end);
-                    if columns.is_empty() {
-                        continue;
-                    }
-                    let columns = columns.start as usize..columns.end as usize;
                     let face = &frame.visible.faces[face as usize];
                     let inverse_depth = &face.plane.inverse_depth;
-                    let on_row = inverse_depth.on_row(row, SampleOffset::CENTER);
-                    centers.fill(columns.clone(), on_row, face.surface);
-                    if frame.is_smooth {
-                        let on_row = SmoothOnRow::of(inverse_depth, row);
-                        self.smooth
-                            .smooth_row(i)
-                            .fill(columns, on_row, face.surface);
+                    for dense in dense_in(&self.dense, span) {
+                        let columns = dense.start as usize..dense.end as usize;
+                        let on_row = inverse_depth.on_row(row, SampleOffset::CENTER);
+                        centers.fill(columns.clone(), on_row, face.surface);
+                        if frame.is_smooth {
+                            let on_row = SmoothOnRow::of(inverse_depth, row);
+                            let mut smooth = self.smooth.smooth_row(i);
+                            smooth.fill(columns, on_row, face.surface);
+                        }
                     }
                 }
                 Sees::Several => {
@@ -211,7 +194,6 @@ impl Band {
 
     /// Paints a row.
     fn paint_row(&mut self, frame: &Frame, row: u32, i: usize, pixels: &mut Pixels) {
-        let BandRow { faces, dense } = &self.rows[i];
         let mut row = RowResolver {
             visible: frame.visible,
             backdrop: frame.backdrop,
@@ -222,32 +204,21 @@ impl Band {
         };
         // Neighbouring pixels whose samples are known are painted together.
         let mut sampled = 0..0;
-        for span in faces.spans() {
-            let Range { start, end } = match span.sees {
-                Sees::Face(_) => {
-                    dense.start.clamp(span.start, span.end)..dense.end.clamp(span.start, span.end)
-                }
-                Sees::Several => span.start..span.end,
+        for span in self.faces[i].spans() {
+            let Sees::Face(face) = span.sees else {
+                sampled.end = span.end as usize;
+                continue;
             };
-            if let Sees::Face(face) = span.sees
-                && span.start < start
-            {
-                row.paint_samples(std::mem::take(&mut sampled));
-                row.paint_face(face, span.start as usize..start as usize);
-            }
-            if start < end {
-                let first = if sampled.is_empty() {
-                    start as usize
-                } else {
-                    sampled.start
-                };
-                sampled = first..end as usize;
-            }
-            if let Sees::Face(face) = span.sees
-                && end < span.end
-            {
-                row.paint_samples(std::mem::take(&mut sampled));
-                row.paint_face(face, end as usize..span.end as usize);
+            let mut start = span.start;
+            let rest = std::iter::once(span.end..span.end);
+            for dense in dense_in(&self.dense, span).chain(rest) {
+                if start < dense.start {
+                    row.paint_samples(sampled);
+                    row.paint_face(face, start as usize..dense.start as usize);
+                    sampled = dense.start as usize..dense.start as usize;
+                }
+                sampled.end = dense.end as usize;
+                start = dense.end;
             }
         }
         row.paint_samples(sampled);
@@ -283,6 +254,25 @@ impl Band {
             );
         }
     }
+}
+
+/// Adds a range of columns to disjoint ones.
+fn join(ranges: &mut Vec<Range<u32>>, mut added: Range<u32>) {
+    let first = ranges.partition_point(|range| range.end < added.start);
+    let end = first + ranges[first..].partition_point(|range| range.start <= added.end);
+    if let Some(touched) = ranges.get(first..end).filter(|touched| !touched.is_empty()) {
+        added.start = added.start.min(touched[0].start);
+        added.end = added.end.max(touched[touched.len() - 1].end);
+    }
+    ranges.splice(first..end, [added]);
+}
+
+/// The parts of dense columns that a span has.
+fn dense_in(dense: &[Range<u32>], span: &Span) -> impl Iterator<Item = Range<u32>> {
+    let parts = dense
+        .iter()
+        .map(|dense| dense.start.max(span.start)..dense.end.min(span.end));
+    parts.filter(|part| !part.is_empty())
 }
 
 /// The rows of a window that are among these.

@@ -1,9 +1,12 @@
 //! Boxes around drawn shapes.
 
-use bevy::math::{Mat3, Vec3};
+use bevy::math::{Mat3, Vec3, Vec4};
 use tabletop_geometry::{Pose, Solid};
 
-use crate::{camera::PinholeView, scene::DrawnSolid};
+use crate::{
+    camera::{FourTurned, FourVectors, PinholeView},
+    scene::DrawnSolid,
+};
 
 /// The corners of the cuboid around a solid, relative to the eye, numbered as [`CUBOID`](super::face::CUBOID) has them.
 pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &PinholeView) -> [Vec3; 8] {
@@ -22,9 +25,19 @@ pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &PinholeView) -> [Vec3;
 }
 
 /// The corners of a box with these least and largest coordinates in the frame of a body, relative to the eye.
-pub(crate) fn corners_of_box(body: Pose, bounds: [Vec3; 2], view: &PinholeView) -> [Vec3; 8] {
-    std::array::from_fn(|corner| {
-        let coordinate = |axis: usize| bounds[corner >> axis & 1][axis];
-        body * Vec3::new(coordinate(0), coordinate(1), coordinate(2)) - view.eye
+pub(crate) fn corners_of_box(
+    body: Pose,
+    [least, most]: [Vec3; 2],
+    view: &PinholeView,
+) -> [FourVectors; 2] {
+    let turned = FourTurned::by(body.rotation);
+    let origin = FourVectors::splat(body.location - view.eye);
+    [least.z, most.z].map(|z| {
+        let corners = FourVectors {
+            x: Vec4::new(least.x, most.x, least.x, most.x),
+            y: Vec4::new(least.y, least.y, most.y, most.y),
+            z: Vec4::splat(z),
+        };
+        turned.apply(corners) + origin
     })
 }

@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
-/// The triangles of each band of rows, in the order of the rows in which they begin, as in a scan-line algorithm.
+/// The triangles of each band of rows, in the order of the rows in which they come up, as in a scan-line algorithm.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeTable {
+    /// The first and the last band of each triangle.
+    bands: Vec<[u32; 2]>,
     by_row: Buckets,
     by_band: Buckets,
 }
@@ -18,56 +20,72 @@ struct Buckets {
 }
 
 impl EdgeTable {
-    /// Sorts triangles that may be seen in these rows.
-    pub fn sort<'a>(
+    /// Sorts triangles that come up in these rows and may be seen in those.
+    pub fn sort<'a, const ROWS_IN_BAND: u32>(
         &mut self,
-        rows: impl Iterator<Item = &'a Range<u32>> + Clone,
+        comes_up: &[u32],
+        rows: impl Iterator<Item = &'a Range<u32>>,
         height: u32,
-        rows_in_band: u32,
     ) {
-        let first_rows = rows.clone().zip(0..).map(|(rows, i)| (rows.start, i));
-        self.by_row.fill(height, first_rows);
-        let rows: Vec<_> = rows.collect();
-        let bands = self.by_row.numbers.iter().flat_map(|&i| {
-            let rows = rows[i as usize];
-            let last = (rows.end - 1) / rows_in_band;
-            (rows.start / rows_in_band..=last).map(move |band| (band, i))
-        });
-        self.by_band.fill(height.div_ceil(rows_in_band), bands);
+        self.bands.clear();
+        let bands = rows.map(|rows| [rows.start, rows.end - 1].map(|row| row / ROWS_IN_BAND));
+        self.bands.extend(bands);
+        self.by_row.clear(height);
+        for &row in comes_up {
+            self.by_row.count(row);
+        }
+        self.by_row.make_room();
+        for (&row, number) in comes_up.iter().zip(0..) {
+            self.by_row.put(row, number);
+        }
+        self.by_band.clear(height.div_ceil(ROWS_IN_BAND));
+        for &[first, last] in &self.bands {
+            (first..=last).for_each(|band| self.by_band.count(band));
+        }
+        self.by_band.make_room();
+        for &number in &self.by_row.numbers {
+            let [first, last] = self.bands[number as usize];
+            (first..=last).for_each(|band| self.by_band.put(band, number));
+        }
     }
 
     /// The triangles of a band. Those that come up in the same row are in the order of the scene.
     pub fn in_band(&self, band: u32) -> &[u32] {
-        let band = band as usize;
-        let [start, end] = [band, band + 1].map(|i| self.by_band.starts[i] as usize);
+        // A bucket starts where, once all are filled, the one before ends.
+        let ends = &self.by_band.starts;
+        let [start, end] = [band, band + 1].map(|i| ends[i as usize] as usize);
         &self.by_band.numbers[start..end]
     }
 }
 
 impl Buckets {
-    /// Fills buckets, of this number, from pairs of a bucket and a number.
-    fn fill(&mut self, buckets: u32, pairs: impl Iterator<Item = (u32, u32)> + Clone) {
-        let Self { numbers, starts } = self;
-        starts.clear();
-        starts.resize(buckets as usize + 1, 0);
-        for (bucket, _) in pairs.clone() {
-            starts[bucket as usize + 1] += 1;
-        }
+    /// Empties this number of buckets.
+    fn clear(&mut self, buckets: u32) {
+        self.starts.clear();
+        self.starts.resize(buckets as usize + 2, 0);
+    }
+
+    /// Counts one more number for a bucket.
+    fn count(&mut self, bucket: u32) {
+        self.starts[bucket as usize + 2] += 1;
+    }
+
+    /// Makes room for the numbers that were counted.
+    fn make_room(&mut self) {
         let mut sum = 0;
-        for start in starts.iter_mut() {
+        for start in &mut self.starts {
             sum += *start;
             *start = sum;
         }
-        // While they are being filled, a bucket's numbers start where those of the bucket before end.
-        numbers.clear();
-        numbers.resize(sum as usize, 0);
-        for (bucket, number) in pairs {
-            let end = &mut starts[bucket as usize];
-            numbers[*end as usize] = number;
-            *end += 1;
-        }
-        starts.rotate_right(1);
-        starts[0] = 0;
+        self.numbers.resize(sum as usize, 0);
+    }
+
+    /// Puts a number into a bucket, behind those that are there.
+    fn put(&mut self, bucket: u32, number: u32) {
+        // The start of the next bucket moves, and is where it belongs once this one is full.
+        let end = &mut self.starts[bucket as usize + 1];
+        self.numbers[*end as usize] = number;
+        *end += 1;
     }
 }
 
@@ -78,7 +96,8 @@ mod tests {
     #[test]
     fn triangles_are_in_all_their_bands_and_come_up_in_order() {
         let mut table = EdgeTable::default();
-        table.sort([4..6, 0..9, 3..4, 3..5].iter(), 12, 4);
+        let rows = [4..6, 0..9, 3..4, 3..5];
+        table.sort::<4>(&rows.clone().map(|rows| rows.start), rows.iter(), 12);
         assert_eq!(
             [0, 1, 2].map(|band| table.in_band(band).to_vec()),
             [vec![1, 2, 3], vec![1, 3, 0], vec![1]]

@@ -179,13 +179,6 @@ fn not_left_of(x: f32, width: f32) -> f32 {
     nearest + if x > nearest { 1.0 } else { 0.0 }
 }
 
-/// The first column that is not left of x.
-pub(crate) fn first_column(x: f32, width: usize) -> usize {
-    let x = x.clamp(0.0, width as f32);
-    let column = x as u32;
-    (column + u32::from(x > column as f32)) as usize
-}
-
 impl From<Linear> for Edge {
     /// The edge of the side on which this is positive.
     fn from(Linear { first, right, down }: Linear) -> Self {

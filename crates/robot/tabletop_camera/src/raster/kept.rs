@@ -24,7 +24,7 @@ pub(crate) struct KeptBands {
 /// The content of a picture.
 #[derive(Clone, Debug, Default)]
 struct PictureContent {
-    view: Option<([u32; 11], bool)>,
+    view: Option<[u32; 12]>,
     solids: Vec<(DrawnSolid, Range<u32>)>,
     figures: Vec<(FigureKey, Range<u32>)>,
     markers: Vec<Vec3>,
@@ -47,19 +47,13 @@ pub(crate) struct KeptBand<'a> {
 
 impl KeptBands {
     /// Finds the bands in which a picture repeats the last one.
-    pub fn compare(
-        &mut self,
-        scene: &Scene,
-        visible: &VisibleSurfaces,
-        view: &PinholeView,
-        is_smooth: bool,
-    ) {
+    pub fn compare(&mut self, scene: &Scene, visible: &VisibleSurfaces, view: &PinholeView) {
         let bands = (view.height as usize).div_ceil(ROWS);
         self.picture.resize(view.width, view.height);
         self.is_kept.resize(bands, false);
         self.stays.clear();
         let shown = &mut self.shown;
-        let view = Some((view.bits(), is_smooth));
+        let view = Some(view.bits());
         let is_same_room = shown.view == view
             && shown.solids.len() == scene.solids.len()
             && shown.figures.len() == scene.figures.len()

@@ -3,6 +3,8 @@
 use bevy::math::{Vec3, Vec4};
 use tabletop_core::Light;
 
+use crate::camera::FourVectors;
+
 /// The light of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lighting {
@@ -33,15 +35,17 @@ impl Lighting {
         self.light.share(normal)
     }
 
-    /// The [clamped](Self::clamp) shares of four surfaces, whose normals are given by their parts along X, Y and Z.
+    /// The [clamped](Self::clamp) shares of four surfaces with these normals.
     #[inline]
-    pub fn four_shares(&self, normals: [Vec4; 3]) -> Vec4 {
-        let (along, against) = (self.light.along, self.light.against);
-        let [x, y, z] = std::array::from_fn(|axis| {
-            let normal = normals[axis];
-            let [along, against] = [along, against].map(|shares| Vec4::splat(shares[axis]));
+    pub fn four_shares(&self, normals: FourVectors) -> Vec4 {
+        let part = |normal: Vec4, along: f32, against: f32| {
+            let (along, against) = (Vec4::splat(along), Vec4::splat(against));
             normal * normal * Vec4::select(normal.cmpgt(Vec4::ZERO), along, against)
-        });
+        };
+        let Light { along, against, .. } = self.light;
+        let x = part(normals.x, along.x, against.x);
+        let y = part(normals.y, along.y, against.y);
+        let z = part(normals.z, along.z, against.z);
         let share = (x + y + z).min(Vec4::ONE);
         share.max(Vec4::splat(self.least)).min(Vec4::ONE)
     }
@@ -50,6 +54,14 @@ impl Lighting {
     #[inline]
     pub fn clamp(&self, share: f32) -> f32 {
         share.max(self.least).min(1.0)
+    }
+
+    /// [Clamps](Self::clamp) four shares.
+    #[inline]
+    pub fn clamp_four(&self, shares: Vec4) -> Vec4 {
+        let least = Vec4::splat(self.least);
+        // Of a number and NaN, processors choose differently.
+        Vec4::select(shares.cmpgt(least), shares, least).min(Vec4::ONE)
     }
 
     /// A colour, red, green and blue in 0..=255, in this light.
@@ -71,8 +83,8 @@ mod tests {
             Vec3::new(0.3, -0.7, 0.2).normalize(),
             Vec3::splat(-1.0).normalize(),
         ];
-        let part = |axis: usize| Vec4::from_array(normals.map(|normal| normal[axis]));
-        let shares = lighting.four_shares([part(0), part(1), part(2)]);
+        let each = normals.map(|normal| normal.extend(0.0));
+        let shares = lighting.four_shares(FourVectors::of_each(each));
         for (own, normal) in shares.to_array().into_iter().zip(normals) {
             assert_eq!(own, lighting.clamp(lighting.share(normal)), "{normal}");
         }

@@ -23,7 +23,8 @@ const TINY: f32 = 1e-12;
 pub(crate) struct Quadric {
     /// The window in which it may be seen.
     pub window: PictureWindow,
-    curve: Curve,
+    /// Its round surface.
+    pub curve: Curve,
     /// The cross product of the eye and the rays; its length is the radius times the ray's length where a ray is tangential.
     miss: Rays,
     /// The negative dot product of the eye and the rays.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use bevy::math::Vec3;
+use bevy::math::{Vec3, Vec4};
 use tabletop_core::Picture;
 
 use crate::{
@@ -11,6 +11,7 @@ use crate::{
     raster::{
         backdrop::Backdrop,
         samples::{CenterRow, SmoothRow},
+        surface::{FourPixels, RasterSurface},
         visible::VisibleSurfaces,
     },
 };
@@ -101,29 +102,99 @@ impl RowResolver<'_, '_> {
         if columns.is_empty() {
             return;
         }
-        let Self {
-            visible,
-            centers,
-            pixels,
-            ..
-        } = self;
-        let inverse_depths = &centers.inverse_depth[columns.clone()];
-        for (depth, inverse_depth) in pixels.depth[columns.clone()].iter_mut().zip(inverse_depths) {
-            *depth = 1.0 / inverse_depth;
-        }
-        let mut start = columns.start;
-        for run in centers.surface[columns.clone()].chunk_by(|one, next| one == next) {
-            let end = start + run.len();
-            let surface = &visible.surfaces[run[0] as usize];
-            pixels.objects[start..end].fill(surface.object);
-            let (depths, rgb) = (
-                &pixels.depth[start..end],
-                &mut pixels.rgb[3 * start..3 * end],
-            );
-            surface.paint(&visible.lighting, self.row, start, depths, rgb);
-            start = end;
+        self.paint_centers(columns.clone());
+        if !self.visible.quadrics.is_empty() {
+            self.paint_curved(columns.clone());
         }
         self.smooth(columns);
+    }
+
+    /// Paints these columns from the samples in the middle of the pixels.
+    fn paint_centers(&mut self, columns: Range<usize>) {
+        let (surfaces, rest) = self.centers.surface[columns.clone()].as_chunks::<4>();
+        let (inverse_depths, _) = self.centers.inverse_depth[columns.clone()].as_chunks::<4>();
+        let (rgb, _) = self.pixels.rgb[3 * columns.start..3 * columns.end].as_chunks_mut::<12>();
+        let (depths, _) = self.pixels.depth[columns.clone()].as_chunks_mut::<4>();
+        let (objects, _) = self.pixels.objects[columns.clone()].as_chunks_mut::<4>();
+        let count = surfaces.len();
+        let (inverse_depths, rgb) = (&inverse_depths[..count], &mut rgb[..count]);
+        let (depths, objects) = (&mut depths[..count], &mut objects[..count]);
+        let mut is_flat = false;
+        for i in 0..count {
+            let depth = Vec4::ONE / Vec4::from_array(inverse_depths[i]);
+            if is_flat && surfaces[i] == surfaces[i - 1] {
+                rgb[i] = rgb[i - 1];
+                objects[i] = objects[i - 1];
+                depths[i] = depth.to_array();
+                continue;
+            }
+            let pixels = FourPixels {
+                rgb: &mut rgb[i],
+                depth: &mut depths[i],
+                objects: &mut objects[i],
+            };
+            is_flat = RasterSurface::paint_four(
+                surfaces[i].map(|surface| &self.visible.surfaces[surface as usize]),
+                &self.visible.lighting,
+                self.row,
+                columns.start + 4 * i,
+                depth,
+                pixels,
+            );
+        }
+        let rest = columns.end - rest.len()..columns.end;
+        if !rest.is_empty() {
+            self.paint_rest(rest);
+        }
+    }
+
+    /// Paints up to three columns from the samples in the middle of the pixels.
+    #[cold]
+    fn paint_rest(&mut self, columns: Range<usize>) {
+        let count = columns.len();
+        let (mut rgb, mut depth, mut objects) = ([0; 12], [0.0; 4], [0; 4]);
+        let (mut surfaces, mut inverse_depths) = ([0; 4], [0.0; 4]);
+        surfaces[..count].copy_from_slice(&self.centers.surface[columns.clone()]);
+        inverse_depths[..count].copy_from_slice(&self.centers.inverse_depth[columns.clone()]);
+        let pixels = FourPixels {
+            rgb: &mut rgb,
+            depth: &mut depth,
+            objects: &mut objects,
+        };
+        RasterSurface::paint_four(
+            surfaces.map(|surface| &self.visible.surfaces[surface as usize]),
+            &self.visible.lighting,
+            self.row,
+            columns.start,
+            Vec4::ONE / Vec4::from_array(inverse_depths),
+            pixels,
+        );
+        self.pixels.rgb[3 * columns.start..3 * columns.end].copy_from_slice(&rgb[..3 * count]);
+        self.pixels.depth[columns.clone()].copy_from_slice(&depth[..count]);
+        self.pixels.objects[columns].copy_from_slice(&objects[..count]);
+    }
+
+    /// Paints the balls and the sides of cylinders in these columns.
+    fn paint_curved(&mut self, columns: Range<usize>) {
+        let mut start = columns.start;
+        for run in self.centers.surface[columns].chunk_by(|one, next| one == next) {
+            let end = start + run.len();
+            let surface = &self.visible.surfaces[run[0] as usize];
+            if let Some(quadric) = surface.quadric() {
+                let curve = &self.visible.quadrics[quadric].curve;
+                let depths = &self.pixels.depth[start..end];
+                let rgb = &mut self.pixels.rgb[3 * start..3 * end];
+                curve.paint(
+                    surface,
+                    &self.visible.lighting,
+                    self.row,
+                    start,
+                    depths,
+                    rgb,
+                );
+            }
+            start = end;
+        }
     }
 
     /// Mixes the colours of pixels in these columns that see more than one surface.
@@ -148,6 +219,7 @@ impl RowResolver<'_, '_> {
             let surface = &self.visible.surfaces[smooth.surface[column][i] as usize];
             let (x, y) = (column as f32 + offset.x, self.row as f32 + offset.y);
             sum += surface.shown(
+                &self.visible.quadrics,
                 &self.visible.lighting,
                 x,
                 y,

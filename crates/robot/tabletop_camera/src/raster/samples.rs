@@ -33,6 +33,9 @@ pub(crate) struct Samples<Depth, RasterSurface> {
 /// Number of samples behind the last ones, so that four can be read wherever one is.
 const PADDING: usize = 3;
 
+/// The columns of four samples from the first one on.
+const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
+
 pub(crate) type CenterSamples = Samples<f32, u32>;
 pub(crate) type SmoothSamples = Samples<[f32; 4], [u32; 4]>;
 
@@ -101,7 +104,7 @@ impl CenterSamples {
         }
     }
 
-    /// Puts a surface into a few columns of a row, from the start to before the end, where they see nothing nearer.
+    /// Puts a surface into a few columns of a row, from the start to before the end behind it, where they see nothing nearer.
     #[inline]
     pub fn put_few(
         &mut self,
@@ -110,30 +113,28 @@ impl CenterSamples {
         inverse_depth: OnRow<f32>,
         surface: u32,
     ) {
-        const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
-        let ends = [start, end].map(Vec4::splat);
-        let [base, step] = [inverse_depth.at(0.0), inverse_depth.step].map(Vec4::splat);
         let surface = Vec4::splat(f32::from_bits(surface));
-        let mut x = ends[0] + LANES;
-        let mut first = row * self.width + column(start);
-        while x.x < end {
-            // Four samples at once, among them some behind the columns. Their surfaces are bits only.
-            let (Some(seen_inverse_depth), Some(seen_surface)) = (
-                self.inverse_depth[first..].first_chunk_mut::<4>(),
-                self.surface[first..].first_chunk_mut::<4>(),
-            ) else {
-                return;
-            };
-            let own = base + step * x;
-            put_lanes(
-                seen_inverse_depth,
-                seen_surface,
-                x.cmplt(ends[1]),
-                own,
-                surface,
-            );
+        let row = row * self.width..(row + 1) * self.width + PADDING;
+        let (inverse_depths, surfaces) =
+            (&mut self.inverse_depth[row.clone()], &mut self.surface[row]);
+        let mut x = LANES + start;
+        let mut first = column(start);
+        // Four samples at once, among them some behind the columns. Their surfaces are bits only.
+        while let (Some(seen_inverse_depth), Some(seen_surface)) = (
+            inverse_depths.get_mut(first..first + 4),
+            surfaces.get_mut(first..first + 4),
+        ) && let (Some(seen_inverse_depth), Some(seen_surface)) = (
+            seen_inverse_depth.first_chunk_mut(),
+            seen_surface.first_chunk_mut(),
+        ) {
+            let own = inverse_depth.at_four(x);
+            let is_seen = x.cmplt(Vec4::splat(end));
+            put_lanes(seen_inverse_depth, seen_surface, is_seen, own, surface);
             x += 4.0;
             first += 4;
+            if x.x >= end {
+                return;
+            }
         }
     }
 }
@@ -260,6 +261,16 @@ pub(crate) fn column(x: f32) -> usize {
     // The last bits of a number from 2^23 on count the whole numbers.
     const WHOLE: f32 = 8_388_608.0;
     ((x + WHOLE).to_bits() & 0x007f_ffff) as usize
+}
+
+/// The first columns that are not left of these places, from 0 to the number of columns.
+#[inline]
+pub(crate) fn first_columns(x: Vec4, columns: Vec4) -> Vec4 {
+    // From 2^23 on there are only whole numbers.
+    const WHOLE: f32 = 8_388_608.0;
+    let x = x.max(Vec4::ZERO).min(columns);
+    let nearest = x + WHOLE - WHOLE;
+    nearest + Vec4::select(x.cmpgt(nearest), Vec4::ONE, Vec4::ZERO)
 }
 
 /// Puts a surface, given as bits, into those of four samples that may see it and see nothing nearer.

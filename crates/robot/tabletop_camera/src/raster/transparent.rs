@@ -6,13 +6,12 @@ use tabletop_geometry::{Pose, Solid};
 
 use crate::{
     camera::{PictureWindow, PinholeView, SampleOffset},
-    color::nearest_bytes,
+    color::{nearest_bytes, scaled_to_bytes},
     raster::{
         bounds::corners_of_solid,
         lighting::Lighting,
         quadric::{Curve, Ends, Quadric},
         samples::CenterSamples,
-        surface::RasterSurface,
     },
     scene::DrawnSolid,
 };
@@ -36,7 +35,8 @@ pub(crate) struct Blend {
 struct Sphere {
     distance: f32,
     quadric: Quadric,
-    surface: RasterSurface,
+    /// Its lit colour, red, green and blue in 0..=255.
+    color: Vec3,
 }
 
 impl TransparentSpheres {
@@ -87,7 +87,8 @@ impl TransparentSpheres {
                     let inverse_depth = samples.inverse_depth[column as usize];
                     if inverse_depth > nearest(sample, column as usize) {
                         let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
-                        let shown = sphere.surface.shown(lighting, x, y, 1.0 / inverse_depth);
+                        let curve = &sphere.quadric.curve;
+                        let shown = curve.shown(sphere.color, lighting, x, y, 1.0 / inverse_depth);
                         *sum += shown.extend(1.0);
                     }
                 }
@@ -119,7 +120,7 @@ impl Sphere {
         Some(Self {
             distance: center.distance(view.eye),
             quadric: Quadric::new(curve, Ends::NONE, window, [1; 2]),
-            surface: RasterSurface::curved(&drawn, curve, lighting),
+            color: lighting.lit(scaled_to_bytes(drawn.color)),
         })
     }
 }

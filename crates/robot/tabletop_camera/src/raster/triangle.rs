@@ -5,10 +5,10 @@
 
 use std::ops::Range;
 
-use bevy::math::{Vec3, Vec4};
+use bevy::math::Vec4;
 
 use crate::{
-    camera::{Linear, PinholeView, Rays, SampleOffset},
+    camera::{FourLinear, FourVectors, Linear, PinholeView, SampleOffset, transposed},
     raster::samples::{CenterSamples, SmoothOnRow, SmoothSamples, column},
 };
 
@@ -34,36 +34,55 @@ struct Edges {
     not_before: Vec4,
 }
 
-impl Triangle {
-    /// The triangle with these corners, given relative to the eye and counterclockwise as seen from outside, and with this
-    /// unit normal. It has to be seen from outside.
-    pub fn seen(
-        view: &PinholeView,
-        corners: [Vec3; 3],
-        normal: Vec3,
-        rows: Range<u32>,
-        surface: u32,
-    ) -> Self {
+/// Four triangles in the picture, each a lane.
+pub(crate) struct FourTriangles {
+    inverse_depth: [Linear; 4],
+    edges: [Edges; 4],
+}
+
+impl FourTriangles {
+    /// The triangles with these corners, given relative to the eye and counterclockwise as seen from outside, and with these
+    /// unit normals. They have to be seen from outside.
+    pub fn seen(view: &PinholeView, corners: &[FourVectors; 3], normals: FourVectors) -> Self {
+        let inverse_depth = view.rays.four_dots(normals / normals.dot(corners[0]));
         Self {
-            rows,
-            surface,
-            inverse_depth: view.rays.dot(normal / normal.dot(corners[0])),
+            inverse_depth: inverse_depth.each(),
             edges: Edges::of(view, corners),
         }
     }
 
+    /// One of them.
+    #[inline]
+    pub fn triangle(&self, lane: usize, rows: Range<u32>, surface: u32) -> Triangle {
+        Triangle {
+            rows,
+            surface,
+            inverse_depth: self.inverse_depth[lane],
+            edges: self.edges[lane],
+        }
+    }
+}
+
+impl Triangle {
     /// Draws it into the centre samples that see nothing nearer, in up to four rows.
     #[inline]
     pub fn draw_centers(&self, rows: Range<u32>, first_row: u32, samples: &mut CenterSamples) {
         const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
         let width = samples.width();
-        let [starts, ends] = self.columns(LANES + rows.start as f32, Vec4::ZERO, width);
-        for (row, (start, end)) in rows.zip(starts.to_array().into_iter().zip(ends.to_array())) {
-            if start < end {
-                let inverse_depth = self.inverse_depth.on_row(row, SampleOffset::CENTER);
-                let row = (row - first_row) as usize;
-                samples.put_few(row, [start, end], inverse_depth, self.surface);
-            }
+        let y = LANES + rows.start as f32;
+        let [starts, ends] = self.columns(y, Vec4::ZERO, width);
+        let mut lanes = starts.cmplt(ends).bitmask() & ((1 << rows.len().min(4)) - 1);
+        if lanes == 0 {
+            return;
+        }
+        let (starts, ends) = (starts.to_array(), ends.to_array());
+        let on_rows = self.inverse_depth.on_rows(y, SampleOffset::CENTER);
+        let row = (rows.start - first_row) as usize;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            let columns = [starts[lane], ends[lane]];
+            samples.put_few(row + lane, columns, on_rows[lane], self.surface);
         }
     }
 
@@ -103,31 +122,31 @@ impl Triangle {
 }
 
 impl Edges {
-    /// The edges from each corner to the next: a sample is inside where the ray's product with the normal of the plane through the eye and the
-    /// edge is positive. As many are computed at once as the processor can.
-    fn of(view: &PinholeView, [a, b, c]: [Vec3; 3]) -> Self {
+    /// The edges of four triangles from each corner to the next: a sample is inside where the ray's product with the normal of the plane
+    /// through the eye and the edge is positive.
+    fn of(view: &PinholeView, [a, b, c]: &[FourVectors; 3]) -> [Self; 4] {
         /// Replaces the 0 of a level edge, which then meets rows very far out, on one side or the other.
         const LEVEL: Vec4 = Vec4::splat(1e-30);
-        let lanes = |part: fn(Vec3) -> f32| {
-            let [a, b, c] = [a, b, c].map(part);
-            (Vec4::new(a, b, c, a), Vec4::new(b, c, a, b))
+        let edge = |from: &FourVectors, to: &FourVectors| {
+            let FourLinear { first, right, down } = view.rays.four_dots(to.cross(*from));
+            let right = Vec4::select(right.cmpeq(Vec4::ZERO), LEVEL, right);
+            let is_from = right.cmpgt(Vec4::ZERO);
+            let not_from = Vec4::select(is_from, Vec4::ZERO, Vec4::NEG_INFINITY);
+            let not_before = Vec4::select(is_from, Vec4::INFINITY, Vec4::ZERO);
+            (-down / right, -first / right, not_from, not_before)
         };
-        let ((from_x, to_x), (from_y, to_y)) = (lanes(|at| at.x), lanes(|at| at.y));
-        let (from_z, to_z) = lanes(|at| at.z);
-        let normal_x = to_y * from_z - from_y * to_z;
-        let normal_y = to_z * from_x - from_z * to_x;
-        let normal_z = to_x * from_y - from_x * to_y;
-        let dot = |ray: Vec3| normal_x * ray.x + normal_y * ray.y + normal_z * ray.z;
-        let Rays { first, right, down } = view.rays;
-        let (first, right, down) = (dot(first), dot(right), dot(down));
-        let right = Vec4::select(right.cmpeq(Vec4::ZERO), LEVEL, right);
-        let is_from = right.cmpgt(Vec4::ZERO);
-        Self {
-            slope: -down / right,
-            offset: -first / right,
-            not_from: Vec4::select(is_from, Vec4::ZERO, Vec4::NEG_INFINITY),
-            not_before: Vec4::select(is_from, Vec4::INFINITY, Vec4::ZERO),
-        }
+        let (first, second, third) = (edge(a, b), edge(b, c), edge(c, a));
+        let slopes = transposed([first.0, second.0, third.0, third.0]);
+        let offsets = transposed([first.1, second.1, third.1, third.1]);
+        let not_from = transposed([first.2, second.2, third.2, third.2]);
+        let not_before = transposed([first.3, second.3, third.3, third.3]);
+        let lane = |lane: usize| Self {
+            slope: slopes[lane],
+            offset: offsets[lane],
+            not_from: not_from[lane],
+            not_before: not_before[lane],
+        };
+        [lane(0), lane(1), lane(2), lane(3)]
     }
 }
 

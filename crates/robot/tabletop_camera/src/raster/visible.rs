@@ -2,19 +2,20 @@
 
 use std::{ops::Range, sync::Arc};
 
-use bevy::math::{Mat3, Vec2, Vec3, Vec4};
+use bevy::math::{Vec3, Vec4};
 use tabletop_geometry::Solid;
 
 use crate::{
-    camera::{FourTurned, Linear, PictureWindow, PinholeView},
+    camera::{FourLinear, FourTurned, FourVectors, PictureWindow, PinholeView},
     raster::{
         bounds::{corners_of_box, corners_of_solid},
         edge_table::EdgeTable,
-        face::{CUBOID, CUBOID_NORMALS, EDGE_ON, ROWS, RasterFace, first_column},
+        face::{CUBOID, CUBOID_NORMALS, ROWS, RasterFace},
         lighting::Lighting,
+        projection::{FigureProjection, lanes_of},
         quadric::{Curve, Ends, Quadric},
         surface::{FlatLook, RasterSurface},
-        triangle::Triangle,
+        triangle::{FourTriangles, Triangle},
     },
     scene::{DrawnFigure, DrawnSolid, Facets, Scene},
 };
@@ -39,13 +40,14 @@ pub(crate) struct VisibleSurfaces {
     /// therefore come first.
     figures: Vec<ProjectedFigure>,
     /// The bits of the view in which they are seen.
-    view: Option<[u32; 11]>,
+    view: Option<[u32; 12]>,
     triangles: Vec<Triangle>,
+    /// The row in which each triangle comes up: they are drawn in this order.
+    comes_up: Vec<u32>,
     edge_table: EdgeTable,
     /// Number of patches.
     patch_count: u32,
-    /// The vertices of a figure, four by four.
-    vertices: Vec<VisibleFour>,
+    projection: FigureProjection,
 }
 
 /// The number of surfaces, faces, quadrics, triangles and patches.
@@ -72,24 +74,13 @@ struct ProjectedFigure {
     patches: u32,
 }
 
-/// Four vertices in the picture, each a lane.
+/// A corner of each of four triangles in the picture.
 #[derive(Clone, Copy, Debug)]
-struct VisibleFour {
-    /// Their columns and rows; NaN if they are not in front of the camera.
-    pixels: [[f32; 4]; 2],
-    /// Their locations relative to the eye, along X, Y and Z.
-    places: [[f32; 4]; 3],
-    /// The shares of the triangles' colours that they show.
-    shares: [f32; 4],
-}
-
-/// A corner of a triangle in the picture.
-#[derive(Clone, Copy, Debug)]
-struct VisibleCorner {
+struct FourCorners {
     /// Its location relative to the eye.
-    place: Vec3,
+    places: FourVectors,
     /// The share of the triangle's colour that it shows.
-    share: f32,
+    shares: Vec4,
 }
 
 impl VisibleSurfaces {
@@ -127,10 +118,7 @@ impl VisibleSurfaces {
 
     /// Adds a figure until the surfaces are [truncated](Self::truncate).
     pub fn add_passing_figure(&mut self, drawn: &DrawnFigure, view: &PinholeView) {
-        let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
-        if let Some(window) = view.window_of(&corners) {
-            self.add_figure(drawn, view, &window);
-        }
+        self.add_figure(drawn, view);
     }
 
     /// How much there is of everything.
@@ -151,6 +139,7 @@ impl VisibleSurfaces {
         self.faces.truncate(extent.faces);
         self.quadrics.truncate(extent.quadrics);
         self.triangles.truncate(extent.triangles);
+        self.comes_up.truncate(extent.triangles);
         self.patch_count = extent.patches;
     }
 
@@ -175,9 +164,7 @@ impl VisibleSurfaces {
         }
         self.forget_figures_from(unchanged);
         for drawn in figures.skip(unchanged) {
-            let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
-            let window = view.window_of(&corners);
-            let window = window.and_then(|window| self.add_figure(drawn, view, &window));
+            let window = self.add_figure(drawn, view);
             self.figures.push(ProjectedFigure {
                 facets: Arc::clone(&drawn.facets),
                 pose: drawn.pose_bits(),
@@ -189,7 +176,7 @@ impl VisibleSurfaces {
             });
         }
         let rows = self.triangles.iter().map(|triangle| &triangle.rows);
-        self.edge_table.sort(rows, view.height, ROWS as u32);
+        (self.edge_table).sort::<{ ROWS as u32 }>(&self.comes_up, rows, view.height);
     }
 
     /// Forgets all figures from a number on.
@@ -201,6 +188,7 @@ impl VisibleSurfaces {
         self.surfaces.truncate(surfaces);
         self.patches.truncate(surfaces);
         self.triangles.truncate(triangles);
+        self.comes_up.truncate(triangles);
         self.patch_count = patches;
         self.figures.truncate(end);
         if surfaces == 0 {
@@ -262,9 +250,10 @@ impl VisibleSurfaces {
         let curve = Curve::around_axis(view, center, axis, radius);
         let ends = Ends::of_cylinder(view, center, axis, yspan);
         let side = self.surfaces.len() as u32;
+        let curved = RasterSurface::curved(drawn, self.quadrics.len(), &self.lighting);
         self.quadrics
             .push(Quadric::new(curve, ends, window, [side, side + 1]));
-        self.add_surface(RasterSurface::curved(drawn, curve, &self.lighting));
+        self.add_surface(curved);
         self.add_surface(RasterSurface::flat(drawn, to_eye, &self.lighting));
     }
 
@@ -277,99 +266,57 @@ impl VisibleSurfaces {
     ) {
         let curve = Curve::around_point(view, drawn.pose.location - view.eye, radius);
         let surface = self.surfaces.len() as u32;
+        let curved = RasterSurface::curved(drawn, self.quadrics.len(), &self.lighting);
         self.quadrics
             .push(Quadric::new(curve, Ends::NONE, window, [surface; 2]));
-        self.add_surface(RasterSurface::curved(drawn, curve, &self.lighting));
+        self.add_surface(curved);
     }
 
-    /// Adds the triangles of a figure that may be seen in a window. Returns the window around them.
-    fn add_figure(
-        &mut self,
-        drawn: &DrawnFigure,
-        view: &PinholeView,
-        window: &PictureWindow,
-    ) -> Option<PictureWindow> {
-        let facets = &*drawn.facets;
-        self.find_vertices(drawn, view);
+    /// Adds the triangles of a figure that may be seen. Returns the window around them.
+    fn add_figure(&mut self, drawn: &DrawnFigure, view: &PinholeView) -> Option<PictureWindow> {
+        let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
+        if !view.may_see(&corners) {
+            return None;
+        }
+        let around = self.projection.find(drawn, view);
+        let DrawnFigure { pose, facets, .. } = drawn;
+        let turned = FourTurned::by(pose.rotation);
+        let (location, eye) = (
+            FourVectors::splat(pose.location),
+            FourVectors::splat(view.eye),
+        );
         let lighting = self.lighting;
-        let axes = Mat3::from_quat(drawn.pose.rotation);
-        let eye = drawn.pose.inverse() * view.eye;
-        let mut seen: Option<PictureWindow> = None;
-        for facet in &facets.triangles {
-            if facet.normal.dot(eye) - facet.height < EDGE_ON {
-                continue;
-            }
-            let [a, b, c] = facet.corners;
-            let pixels = [self.pixel(a), self.pixel(b), self.pixel(c)];
-            let Some(own) = window_around(pixels, view, window) else {
-                continue;
+        for four in self.projection.seen().chunks(4) {
+            let own = lanes_of(four, |seen| &facets.triangles[seen.facet as usize]);
+            let normals = own.each_ref().map(|facet| facet.normal);
+            let normals = turned.apply(FourVectors::of_each(normals));
+            let corner = |number: usize| {
+                let vertex = |lane: usize| &facets.vertices[own[lane].corners[number] as usize];
+                let (a, b, c, d) = (vertex(0), vertex(1), vertex(2), vertex(3));
+                let places = FourVectors::of_each([a.place, b.place, c.place, d.place]);
+                let normals = FourVectors::of_each([a.normal, b.normal, c.normal, d.normal]);
+                FourCorners {
+                    places: turned.apply(places) + location - eye,
+                    shares: lighting.four_shares(turned.apply(normals)),
+                }
             };
-            let corners = [self.corner(a), self.corner(b), self.corner(c)];
-            let places = [corners[0].place, corners[1].place, corners[2].place];
-            if pixels.iter().any(|pixel| pixel.is_nan()) && view.is_beside(&places) {
-                continue;
+            let corners = [corner(0), corner(1), corner(2)];
+            let shares = shares_by_depth(view, &corners, normals).each();
+            let [a, b, c] = corners;
+            let triangles = FourTriangles::seen(view, &[a.places, b.places, c.places], normals);
+            for (lane, seen) in four.iter().enumerate() {
+                let surface = self.surfaces.len() as u32;
+                self.triangles
+                    .push(triangles.triangle(lane, seen.rows.clone(), surface));
+                self.comes_up.push(seen.comes_up);
+                let color = self.lighting.lit(own[lane].color);
+                self.surfaces
+                    .push(RasterSurface::gouraud(drawn.object, color, shares[lane]));
+                self.patches.push(self.patch_count + own[lane].patch);
             }
-            let normal = axes * facet.normal;
-            let surface = self.surfaces.len() as u32;
-            let rows = own.rows.clone();
-            self.triangles
-                .push(Triangle::seen(view, places, normal, rows, surface));
-            self.surfaces.push(RasterSurface::gouraud(
-                drawn.object,
-                lighting.lit(facet.color),
-                share_by_depth(view, &corners, normal),
-            ));
-            self.patches.push(self.patch_count + facet.patch);
-            seen = Some(seen.map_or(own.clone(), |seen| seen.joined(&own)));
         }
         self.patch_count += facets.patches;
-        seen
-    }
-
-    /// Finds the vertices of a figure in the picture.
-    fn find_vertices(&mut self, drawn: &DrawnFigure, view: &PinholeView) {
-        let turned = FourTurned::by(drawn.pose.rotation);
-        let [location, eye] =
-            [drawn.pose.location, view.eye].map(|at| at.to_array().map(Vec4::splat));
-        let pixels_of = view.pixels_of(drawn.pose);
-        self.vertices.clear();
-        let fours = drawn.facets.vertices.iter().map(|four| {
-            let mut places = turned.apply(four.positions);
-            for (axis, place) in places.iter_mut().enumerate() {
-                *place = *place + location[axis] - eye[axis];
-            }
-            let shares = self.lighting.four_shares(turned.apply(four.normals));
-            VisibleFour {
-                pixels: pixels_of(four.positions).map(|at| at.to_array()),
-                places: places.map(|at| at.to_array()),
-                shares: shares.to_array(),
-            }
-        });
-        self.vertices.extend(fours);
-    }
-
-    /// The pixel of a vertex of the figure whose vertices were found last; NaN if it is not in front of the camera.
-    #[inline]
-    fn pixel(&self, vertex: u32) -> Vec2 {
-        let (four, lane) = self.four_with(vertex);
-        let [column, row] = &four.pixels;
-        Vec2::new(column[lane], row[lane])
-    }
-
-    /// A vertex of that figure as the corner of a triangle.
-    #[inline]
-    fn corner(&self, vertex: u32) -> VisibleCorner {
-        let (four, lane) = self.four_with(vertex);
-        let [x, y, z] = &four.places;
-        VisibleCorner {
-            place: Vec3::new(x[lane], y[lane], z[lane]),
-            share: four.shares[lane],
-        }
-    }
-
-    #[inline]
-    fn four_with(&self, vertex: u32) -> (&VisibleFour, usize) {
-        (&self.vertices[vertex as usize / 4], vertex as usize % 4)
+        around
     }
 
     /// Adds a surface that is a patch of its own.
@@ -406,57 +353,25 @@ fn rows_in(window: Option<&PictureWindow>) -> Range<u32> {
     window.map_or(0..0, |window| window.rows.clone())
 }
 
-/// The window in which a triangle may be seen whose corners have these pixels; `None` if no sample lies in it. If a corner is not in front of the
-/// camera, that is the window of the whole figure.
-fn window_around(
-    corners: [Vec2; 3],
+/// The shares of their colours that four triangles show, divided by the depth: given at the corners, and linear in between.
+#[inline]
+fn shares_by_depth(
     view: &PinholeView,
-    figure: &PictureWindow,
-) -> Option<PictureWindow> {
-    /// Reach of a pixel's outermost samples, with a bit for rounding.
-    const REACH: f32 = 0.375 + 0.01;
+    corners: &[FourCorners; 3],
+    normals: FourVectors,
+) -> FourLinear {
     let [a, b, c] = corners;
-    if a.is_nan() || b.is_nan() || c.is_nan() {
-        return (!figure.rows.is_empty()).then(|| figure.clone());
-    }
-    let (least, most) = (a.min(b).min(c) - REACH, a.max(b).max(c) + REACH);
-    let between = |least, most, count: u32| {
-        let first = first_column(least, count as usize) as u32;
-        let end = first_column(most, count as usize) as u32;
-        (first < end).then_some(first..end)
-    };
-    let columns = between(least.x, most.x, view.width)?;
-    let rows = between(least.y, most.y, view.height)?;
-    Some(PictureWindow {
-        // A column more on both sides, for rounding errors.
-        columns: columns.start.saturating_sub(1)..(columns.end + 1).min(view.width),
-        rows,
+    let (more_b, more_c) = (b.shares - a.shares, c.shares - a.shares);
+    let (a, share) = (a.places, a.shares);
+    let (to_b, to_c) = (b.places - a, c.places - a);
+    // The vectors whose products with each point of the planes are the shares there.
+    let slope = normals * (share / normals.dot(a));
+    let volume = a.dot(to_b.cross(to_c));
+    let steeper = slope + (to_c.cross(a) * more_b + a.cross(to_b) * more_c) / volume;
+    let is_solid = volume.cmpne(Vec4::ZERO);
+    view.rays.four_dots(FourVectors {
+        x: Vec4::select(is_solid, steeper.x, slope.x),
+        y: Vec4::select(is_solid, steeper.y, slope.y),
+        z: Vec4::select(is_solid, steeper.z, slope.z),
     })
-}
-
-/// The share of its colour that a triangle shows, divided by the depth: given at the corners, and linear in between.
-fn share_by_depth(view: &PinholeView, corners: &[VisibleCorner; 3], normal: Vec3) -> Linear {
-    let [
-        VisibleCorner {
-            place: a, share, ..
-        },
-        VisibleCorner {
-            place: b,
-            share: share_b,
-            ..
-        },
-        VisibleCorner {
-            place: c,
-            share: share_c,
-            ..
-        },
-    ] = *corners;
-    let (more_b, more_c) = (share_b - share, share_c - share);
-    // The vector whose product with each point of the plane is the share there.
-    let mut slope = normal * (share / normal.dot(a));
-    let volume = a.dot((b - a).cross(c - a));
-    if volume != 0.0 {
-        slope += ((c - a).cross(a) * more_b + a.cross(b - a) * more_c) / volume;
-    }
-    view.rays.dot(slope)
 }

@@ -3,37 +3,45 @@
 use bevy::math::{Vec3, Vec4};
 use tabletop_geometry::Triangles;
 
-use crate::color::scaled_to_bytes;
+use crate::{camera::FourVectors, color::scaled_to_bytes};
 
 /// A surface of triangles, prepared for drawing. Each triangle has the colour of its first corner.
 #[derive(Clone, Debug, Default)]
 pub struct Facets {
-    /// The vertices, four by four; behind the last one there are zeros.
-    pub(crate) vertices: Vec<FourVertices>,
+    pub(crate) vertices: Vec<FacetVertex>,
+    /// The locations of the vertices, four by four; behind the last one there are zeros.
+    pub(crate) places: Vec<FourVectors>,
     pub(crate) triangles: Vec<Facet>,
+    /// The planes of the triangles, four by four; behind the last one there are planes that no eye sees.
+    pub(crate) planes: Vec<FourPlanes>,
     /// The least and the largest coordinates.
     pub(crate) bounds: [Vec3; 2],
     /// Number of its patches.
     pub(crate) patches: u32,
 }
 
-/// Four vertices in the frame of the figure, each a lane.
+/// A vertex in the frame of the figure. The fourth parts are 0.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FourVertices {
-    /// Their locations along X, Y and Z.
-    pub positions: [Vec4; 3],
-    /// Their normals along X, Y and Z.
-    pub normals: [Vec4; 3],
+pub(crate) struct FacetVertex {
+    pub place: Vec4,
+    pub normal: Vec4,
+}
+
+/// The planes of four triangles in the frame of the figure, each a lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FourPlanes {
+    /// Their unit normals.
+    pub normals: FourVectors,
+    /// Their distances from the origin, along the normals.
+    pub heights: Vec4,
 }
 
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet {
     pub corners: [u32; 3],
-    /// Unit normal.
-    pub normal: Vec3,
-    /// Distance of its plane from the origin, along the normal.
-    pub height: f32,
+    /// Unit normal; the fourth part is 0.
+    pub normal: Vec4,
     /// Red, green, blue in 0..=255.
     pub color: Vec3,
     /// The smooth part of the surface that it belongs to: triangles with a common vertex are in the same one.
@@ -57,14 +65,15 @@ impl From<&Triangles> for Facets {
     fn from(surface: &Triangles) -> Self {
         let count = surface.positions.len().min(surface.normals.len());
         let positions = &surface.positions[..count];
-        let fours = positions.chunks(4).zip(surface.normals.chunks(4));
-        let vertices = fours.map(|(positions, normals)| FourVertices {
-            positions: lanes(positions),
-            normals: lanes(normals),
+        let vertices = positions.iter().zip(&surface.normals);
+        let vertices = vertices.map(|(place, normal)| FacetVertex {
+            place: place.extend(0.0),
+            normal: normal.extend(0.0),
         });
         let mut patch_of = Patches::new(count);
         let mut bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let mut triangles = Vec::with_capacity(surface.indices.len());
+        let (mut normals, mut heights) = (Vec::new(), Vec::new());
         for &corners in &surface.indices {
             let Some(color) = surface.colors.get(corners[0] as usize) else {
                 continue;
@@ -81,17 +90,27 @@ impl From<&Triangles> for Facets {
                 bounds[0].min(a).min(b).min(c),
                 bounds[1].max(a).max(b).max(c),
             ];
+            normals.push(normal);
+            heights.push(normal.dot(a));
             triangles.push(Facet {
                 corners,
-                normal,
-                height: normal.dot(a),
+                normal: normal.extend(0.0),
                 color: scaled_to_bytes(*color),
                 patch: 0,
             });
         }
         let patches = patch_of.number(&mut triangles);
+        let planes = normals.chunks(4).zip(heights.chunks(4));
+        let planes = planes.map(|(normals, heights)| FourPlanes {
+            normals: lanes(normals),
+            heights: Vec4::from_array(std::array::from_fn(|lane| {
+                heights.get(lane).map_or(f32::INFINITY, |height| *height)
+            })),
+        });
         Self {
             vertices: vertices.collect(),
+            places: positions.chunks(4).map(lanes).collect(),
+            planes: planes.collect(),
             triangles,
             bounds,
             patches,
@@ -99,12 +118,10 @@ impl From<&Triangles> for Facets {
     }
 }
 
-/// Up to four vectors by their parts along X, Y and Z, each a lane.
-fn lanes(vectors: &[Vec3]) -> [Vec4; 3] {
-    std::array::from_fn(|axis| {
-        let part = |lane: usize| vectors.get(lane).map_or(0.0, |vector| vector[axis]);
-        Vec4::new(part(0), part(1), part(2), part(3))
-    })
+/// Up to four vectors, each a lane; zeros in those that are left.
+fn lanes(vectors: &[Vec3]) -> FourVectors {
+    let vector = |lane: usize| vectors.get(lane).map_or(Vec4::ZERO, |it| it.extend(0.0));
+    FourVectors::of_each([vector(0), vector(1), vector(2), vector(3)])
 }
 
 /// A partition of vertices into groups.
@@ -185,7 +202,7 @@ mod tests {
             &[[0, 0, 1], [0, 1, 9], [0, 1, 3], [0, 4, 3], [0, 1, 2]],
         );
         assert_eq!(facets.triangles.len(), 1);
-        assert_eq!(facets.triangles[0].normal, Vec3::Z);
+        assert_eq!(facets.triangles[0].normal, Vec4::Z);
         assert_eq!(surface(&[], &[]).triangles.len(), 0);
     }
 }
