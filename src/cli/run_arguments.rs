@@ -19,7 +19,7 @@ use super::{
     quiet::QuietOption,
     range::SEEDS,
     real::{self, RealOptions},
-    robot_options::{EngineOptions, RobotOptions, layout_of, script},
+    robot_options::{EngineOptions, RobotOptions, script},
     script::headless_settings,
     seed_range::seed_range,
     shard::ShardOption,
