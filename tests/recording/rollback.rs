@@ -82,7 +82,7 @@ fn watch(app: &mut App, forgotten: &mut BTreeSet<String>) {
 }
 
 /// Resources that undo leaves as they are.
-const NOT_ROLLED_BACK: [&str; 26] = [
+const NOT_ROLLED_BACK: [&str; 27] = [
     // Undo itself, and the recording that it is a part of.
     "tabletop_core::recording::History",
     "tabletop_core::recording::Recording",
@@ -111,6 +111,7 @@ const NOT_ROLLED_BACK: [&str; 26] = [
     "tabletop_physics::encounter::free_flights::FreeFlights",
     "tabletop_physics::impact::onset::Onset",
     "tabletop_physics::linkage::FreeLinkages",
+    "tabletop_core::clock::Forgotten",
     "tabletop_core::rest::Rest",
     "tabletop_physics::workarounds::outside::WrittenBack",
     "tabletop_physics::rest::LastStep",

@@ -184,6 +184,9 @@ fn hold_for_all_systems(known: &mut Known, world: &World) -> bool {
 }
 
 fn holds_for(known: &mut Known, label: InternedScheduleLabel, schedule: &Schedule) -> bool {
+    if schedule.graph().systems.is_empty() {
+        return true;
+    }
     let resting = match schedule.graph().systems_in_set(RestingSystems.intern()) {
         Ok(resting) => resting.len(),
         Err(ScheduleError::SetNotFound) => 0,

@@ -127,9 +127,9 @@ pub(crate) fn cut_links(world: &mut World) {
                 blade,
                 link,
             }));
-            world.insert_resource(Cause(cause));
+            *world.resource_mut() = Cause(cause);
             remove_object(world, object);
-            world.insert_resource(Cause(None));
+            *world.resource_mut() = Cause(None);
         }
     }
 }

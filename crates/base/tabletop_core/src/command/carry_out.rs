@@ -26,9 +26,9 @@ pub fn carry_out<C: CommandKind>(
         .map(|(id, command): (_, &C)| (id, command.clone()))
         .collect();
     for (id, command) in commands {
-        world.insert_resource(Cause(Some(id)));
+        *world.resource_mut() = Cause(Some(id));
         let refusal = each(world, id, command).err();
-        world.insert_resource(Cause(None));
+        *world.resource_mut() = Cause(None);
         if let Some(reason) = refusal {
             world.write_message(SimFact::Refused {
                 cause: Some(id),

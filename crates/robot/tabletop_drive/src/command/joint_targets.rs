@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use tabletop_core::{Drive, JointId, JointRole, LimbId, MeasuredJoint, RobotLayout, TICK_SECONDS};
 
 /// Targets of the joints, for this tick and later ones.
-#[derive(Resource, Clone, Debug)]
+#[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct JointTargets {
     /// Drives of this tick, by [`JointId`].
     now: Vec<Option<Drive>>,

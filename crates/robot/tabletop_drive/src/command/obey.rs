@@ -32,9 +32,7 @@ pub(crate) fn obey(
                 )
             })?;
             let angles = reach(world, limb, pose)?;
-            world.resource_scope(|world, mut targets: Mut<JointTargets>| {
-                targets.send(world.resource::<RobotLayout>(), limb, angles);
-            });
+            aim(world, |layout, targets| targets.send(layout, limb, angles));
             Ok(())
         }
         RobotCommand::ShowFace(face) => {
@@ -61,10 +59,15 @@ fn mirror(world: &mut World, measured: Vec<(JointName, MeasuredJoint)>) -> Resul
         }
     });
     let measured = measured.collect::<Result<Vec<_>, String>>()?;
-    world.resource_scope(|world, mut targets: Mut<JointTargets>| {
-        targets.mirror(world.resource::<RobotLayout>(), measured);
-    });
+    aim(world, |layout, targets| targets.mirror(layout, measured));
     Ok(())
+}
+
+/// Changes the targets of joints. They stay a resource of the world meanwhile, an empty one: to take a resource out costs more than the change.
+fn aim(world: &mut World, change: impl FnOnce(&RobotLayout, &mut JointTargets)) {
+    let mut targets = std::mem::take(&mut *world.resource_mut::<JointTargets>());
+    change(world.resource::<RobotLayout>(), &mut targets);
+    *world.resource_mut() = targets;
 }
 
 fn find_joint(layout: &RobotLayout, name: JointName) -> Result<JointId, String> {
@@ -84,8 +87,7 @@ fn drive(world: &mut World, drives: Vec<(JointName, Drive)>) -> Result<(), Strin
         Ok((joint, drive))
     });
     let drives = drives.collect::<Result<Vec<(JointId, Drive)>, String>>()?;
-    world.resource_scope(|world, mut targets: Mut<JointTargets>| {
-        let layout = world.resource::<RobotLayout>();
+    aim(world, |layout, targets| {
         for (joint, drive) in drives {
             match drive {
                 Drive::Position(there) if has_motor(mode, layout.joint(joint)) => {
