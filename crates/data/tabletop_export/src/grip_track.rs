@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use tabletop_core::{JointRole, LimbName, Manipulator, RobotLayout, SimTick};
+use tabletop_core::{LimbName, Manipulator, RobotLayout, SimTick};
 use tabletop_task::{ActDeed, Demonstration};
 
 use crate::episode::FrameVectors;
@@ -51,10 +51,8 @@ impl GripTrack {
     ) -> FrameVectors {
         let mut orders = joints.clone();
         let width = orders.names.len();
-        for joint in &layout.joints {
-            let JointRole::Gripper(limb) = joint.role else {
-                continue;
-            };
+        for limb in &layout.limbs {
+            let joint = layout.joint(limb.gripper.joint);
             let Some(column) = joints
                 .names
                 .iter()
@@ -62,9 +60,8 @@ impl GripTrack {
             else {
                 continue;
             };
-            let limb = layout.limb(limb).name;
             for (frame, tick) in orders.values.chunks_mut(width).zip(ticks) {
-                if self.holds(limb, *tick) {
+                if self.holds(limb.name, *tick) {
                     frame[column] = joint.limits[0] as f32;
                 }
             }

@@ -3,8 +3,8 @@
 use bevy::prelude::*;
 use tabletop_controller::{Drives, Observer, Sight};
 use tabletop_core::{
-    Actor, Drive, JointId, LimbId, MANUAL_SPEED, Robot, RobotCommand, RobotLayout,
-    TICKS_PER_SECOND, WriteCommand as _, step_world,
+    Actor, Drive, JointId, LimbId, Robot, RobotCommand, RobotLayout, TICKS_PER_SECOND,
+    WriteCommand as _, step_world,
 };
 use tabletop_geometry::{Pose, UNITS_PER_METER, turn_about};
 use tabletop_planner::PlanFailure;
@@ -19,8 +19,6 @@ use crate::{
 
 /// Ticks for which a task must be done without a break until it counts as done.
 const SETTLED: u64 = 30;
-/// The fastest that a gripper's opening changes, in units/s.
-const GRIPPER_SPEED: f64 = 2.0;
 
 /// Lets a robot act as a served policy says until the task is done, which `is_done` tells, or until its time is over.
 ///
@@ -161,18 +159,14 @@ fn drives(world: &World, goals: &[(JointId, JointGoal)], left: u64) -> Drives {
     goals.iter().map(drive).collect()
 }
 
-/// The greatest speed of a joint, in rad/s, or units/s for a gripper's opening.
+/// The greatest speed of a joint, in rad/s or m/s, or units/s for a gripper's opening: the model's, or else the layout's.
 fn fastest(world: &World, joint: JointId) -> f64 {
     let articulation = world.resource::<Articulation>();
     let layout = articulation.layout.joint(joint);
-    if layout.is_gripper() {
-        return GRIPPER_SPEED;
-    }
-    let model = articulation.model();
-    let described = articulation.joint(joint);
-    let described = described.map_or(0.0, |joint| model.joint(joint).velocity);
-    match described.max(layout.speed) {
-        speed if speed > 0.0 => speed,
-        _ => MANUAL_SPEED,
+    let described = articulation.joint(joint).filter(|_| !layout.is_gripper());
+    let described = described.map_or(0.0, |joint| articulation.model().joint(joint).velocity);
+    match described > layout.speed {
+        true => described,
+        false => layout.travel_speed(),
     }
 }
