@@ -15,7 +15,7 @@ use crate::{
 };
 use clap::Args;
 
-use super::{Failure, Output};
+use super::{Failure, Output, result_file::require_outside};
 
 #[derive(Args)]
 pub(super) struct InitArgs {
@@ -46,6 +46,9 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
 
 /// Writes the missing files, each whole or not at all, unless an existing one differs.
 fn make_folder(target: &Path) -> Result<(), Failure> {
+    for folder in WORKING_FOLDERS {
+        require_outside(&InnerPath::fixed(folder).below(target), &[])?;
+    }
     let mut missing = Vec::new();
     let mut differing = Vec::new();
     for folder in WORKING_FOLDERS {

@@ -97,13 +97,14 @@ fn a_working_folder_is_written_and_used() {
     let written = run_in(&folder, &["init", "work"]);
     succeeded(&written);
     let said = stdout(&written);
-    assert_eq!(said.lines().count(), 5, "{said}");
+    assert_eq!(said.lines().count(), 6, "{said}");
     for file in [
         "tablesetup/default.xml",
         "tablesetup/tabletop.xsd",
         "matlab/agentBehavior.m",
         "scenarios/stack_two_blocks.ron",
         "python/example.py",
+        "assets/panda/robot.ron",
     ] {
         let text = fs::read(folder.join("work").join(file)).unwrap();
         assert_eq!(text, fs::read(file).unwrap(), "{file}");
@@ -123,6 +124,23 @@ fn a_working_folder_is_written_and_used() {
     );
     let own = fs::read_to_string(folder.join("work/tablesetup/default.xml")).unwrap();
     assert_eq!(own, "mine");
+}
+
+#[test]
+fn names_without_folder_and_ending_lead_to_shipped_files() {
+    for (args, near) in [
+        (
+            ["run", "stack_three", "--quiet"],
+            "scenarios/stack_three.ron",
+        ),
+        (["robot", "check", "panda"], "assets/panda/robot.ron"),
+        (["run", "--setup", "bloks"], "tablesetup/blocks.xml"),
+    ] {
+        let refused = tabletop(&args);
+        assert_eq!(refused.status.code(), Some(2), "{args:?}");
+        let said = stderr(&refused);
+        assert!(said.contains(&format!("did you mean {near}?")), "{said}");
+    }
 }
 
 #[test]

@@ -60,6 +60,7 @@ fn nothing_is_written_into_a_recording() {
         inside,
     );
     refused(&["report", &demo, &at("demo/page.html")], &folder, inside);
+    refused(&["init", &demo], &folder, inside);
     refused(&["video", &demo, &at("demo/0/0.png")], &folder, inside);
     refused(&["edit", &demo, &inner, "--drop", "1"], &folder, inside);
     refused(&["replay", &demo, "--out", &inner], &folder, inside);

@@ -61,15 +61,26 @@ impl ShippedFiles {
         self.0.iter().find(|file| Path::new(file.path) == inside)
     }
 
-    /// The shipped file whose name is the most like that of a path that leads to nothing, among those of the same ending.
-    pub fn nearest(&self, path: &Path) -> Option<&ShippedFile> {
+    /// The shipped file of a folder whose name is the most like that of a path that leads to nothing: with its ending, without it, or, of a
+    /// `robot.ron`, that of the folder around it.
+    pub fn nearest(&self, path: &Path, folder: &str) -> Option<&ShippedFile> {
         let name = path.file_name()?.to_str()?;
-        let of_ending = |file: &&ShippedFile| Path::new(file.path).extension() == path.extension();
-        let name_of = |file: &ShippedFile| file.path.rsplit('/').next().unwrap_or(file.path);
-        let files: Vec<_> = self.0.iter().filter(of_ending).collect();
-        let names: Vec<_> = files.iter().map(|file| name_of(file)).collect();
+        let files: Vec<_> = self.in_folder(folder).collect();
+        let robots = files.iter().filter_map(|file| {
+            let (around, name) = file.path.rsplit_once('/')?;
+            let robot = around.rsplit('/').next().filter(|_| name == "robot.ron")?;
+            Some((robot, *file))
+        });
+        let whole = files.iter().map(|file| (file_name(file.path), *file));
+        let stems = whole.clone().filter_map(|(name, file)| {
+            let (stem, _) = name.rsplit_once('.')?;
+            Some((stem, file))
+        });
+        let called: Vec<_> = robots.chain(whole).chain(stems).collect();
+        let names: Vec<_> = called.iter().map(|(name, _)| *name).collect();
         let nearest = nearest_name(name, &names)?;
-        files.into_iter().find(|file| name_of(file) == nearest)
+        let found = called.into_iter().find(|(name, _)| *name == nearest);
+        found.map(|(_, file)| file)
     }
 
     /// The place in a working folder that a path means, if a file or folder is shipped there. The path is a [name](ShippedFile::name),
@@ -85,6 +96,10 @@ impl ShippedFiles {
         let is_shipped = files.any(|file| Path::new(file.path).starts_with(&inside));
         is_shipped.then_some(inside)
     }
+}
+
+fn file_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
 }
 
 /// The path that a file names, seen from that file's folder.
@@ -141,6 +156,23 @@ mod tests {
         assert_eq!(found("tablesetup/tower.xml"), Some(TOWER.path));
         assert_eq!(found("Cargo.toml"), None);
         assert_eq!(found("shipped:Cargo.toml"), Some("Cargo.toml"));
+    }
+
+    #[test]
+    fn near_files_are_found_by_their_names() {
+        let file = |path| ShippedFile { path, text: "" };
+        let shipped = ShippedFiles::new([
+            file("assets/panda/panda.urdf"),
+            file("assets/panda/robot.ron"),
+            file("scenarios/tower.ron"),
+            TOWER,
+        ]);
+        let near = |path, folder| shipped.nearest(Path::new(path), folder).map(|it| it.path);
+        assert_eq!(near("panda", "assets"), Some("assets/panda/robot.ron"));
+        assert_eq!(near("pnda.urdf", "assets"), Some("assets/panda/panda.urdf"));
+        assert_eq!(near("there/towr", "scenarios"), Some("scenarios/tower.ron"));
+        assert_eq!(near("tower.xlm", "tablesetup"), Some(TOWER.path));
+        assert_eq!(near("bridge", "scenarios"), None);
     }
 
     #[test]

@@ -1,5 +1,9 @@
 //! The attempts at a program: its steps as they are tried on the table, each until it leads where it should.
 
+use std::collections::BTreeSet;
+
+use tabletop_task::Relation;
+
 use crate::{
     program::TaskProgram,
     run::{Impossible, NextStep, ProgramRun},
@@ -16,6 +20,8 @@ pub struct ProgramAttempts {
     run: ProgramRun,
     /// The last step, and how often it was tried before.
     last: Option<(ConcreteStep, usize)>,
+    /// The objects that were removed. A robot can only lay them aside; they are out of play all the same.
+    removed: BTreeSet<String>,
     /// The steps that were done, in words.
     pub steps: Vec<String>,
     /// Number of repeated tries.
@@ -57,6 +63,7 @@ impl ProgramAttempts {
         Self {
             run: ProgramRun::begin(program, scene),
             last: None,
+            removed: BTreeSet::new(),
             steps: Vec::new(),
             corrections: 0,
         }
@@ -64,6 +71,7 @@ impl ProgramAttempts {
 
     /// What is to be tried on the table as it is now.
     pub fn next_on(&mut self, scene: &TableScene) -> NextAttempt {
+        let scene = &self.in_play(scene);
         let step = match self.run.next_on(scene) {
             NextStep::Step(step) => step,
             NextStep::Done => return NextAttempt::Done,
@@ -85,10 +93,24 @@ impl ProgramAttempts {
         NextAttempt::Try(attempt)
     }
 
+    /// The table without what was removed.
+    fn in_play(&self, scene: &TableScene) -> TableScene {
+        let mut scene = scene.clone();
+        let removed = &self.removed;
+        scene.objects.retain(|object| !removed.contains(&object.id));
+        scene
+            .joints
+            .retain(|joint| joint.objects.iter().all(|id| !removed.contains(id)));
+        scene
+    }
+
     /// Takes in that a step was done, as far as its hand or robot can tell.
     pub fn did(&mut self, attempt: StepAttempt) {
         if attempt.tries == 0 {
             self.steps.push(attempt.sentence);
+        }
+        if attempt.step.relation == Relation::Destroyed {
+            self.removed.insert(attempt.step.object.clone());
         }
         self.last = Some((attempt.step, attempt.tries));
     }

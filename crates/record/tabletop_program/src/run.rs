@@ -44,7 +44,7 @@ pub enum NextStep {
 
 /// The reason why a program cannot be carried on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{sentence} {}{reason}", .object.as_ref().map_or(String::new(), |object| format!("{object}: ")))]
+#[error("{}: {}{reason}", .sentence.trim_end_matches('.'), .object.as_ref().map_or(String::new(), |object| format!("{object}: ")))]
 pub struct Impossible {
     /// The sentence that cannot be done.
     pub sentence: String,

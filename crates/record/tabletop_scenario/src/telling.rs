@@ -43,8 +43,8 @@ impl HandTelling {
                         NextAttempt::Done => return Ok(None),
                         NextAttempt::Impossible(reason) => return Err(reason.to_string()),
                         NextAttempt::Misplaced(StepAttempt { step, sentence, .. }) => {
-                            let object = step.object;
-                            return Err(format!("{sentence} {object} is not where it was put"));
+                            let (said, object) = (sentence.trim_end_matches('.'), step.object);
+                            return Err(format!("{said}: {object} is not where it was put"));
                         }
                     };
                     let step = HandStep::begin(&scene, &attempt.step, self.hand);

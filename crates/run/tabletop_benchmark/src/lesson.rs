@@ -15,7 +15,7 @@ pub struct BenchmarkLesson {
     /// The program, in sentences.
     pub sentences: &'static str,
     pub(crate) props: &'static [Prop],
-    /// What the objects are that it is about, and what is there beside them.
+    /// What the objects are that it is about, and what is there beside them. Where some begin in their place, these are not all those of one look.
     pub(crate) pieces: &'static [PieceSpec],
     pub(crate) start: Start,
     /// The fewest objects with which it can be shown.

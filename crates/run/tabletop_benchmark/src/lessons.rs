@@ -272,8 +272,8 @@ pub static LESSONS: [BenchmarkLesson; 41] = [
         props: &[Prop::Plate(Rgb::WHITE)],
         pieces: &[
             block(Rgb::RED),
-            block(Rgb::GREEN),
             block(Rgb::RED),
+            block(Rgb::GREEN),
             block(Rgb::GREEN),
         ],
         start: Start::HalfThere,
@@ -285,8 +285,8 @@ pub static LESSONS: [BenchmarkLesson; 41] = [
         props: &[Prop::Box(Rgb::GRAY)],
         pieces: &[
             block(Rgb::RED),
-            block(Rgb::GREEN),
             block(Rgb::RED),
+            block(Rgb::GREEN),
             block(Rgb::GREEN),
         ],
         start: Start::HalfThere,
@@ -311,8 +311,8 @@ pub static LESSONS: [BenchmarkLesson; 41] = [
         props: &[Prop::Box(Rgb::GRAY), Prop::Plate(Rgb::WHITE)],
         pieces: &[
             block(Rgb::RED),
-            block(Rgb::GREEN),
-            ball(Rgb::RED),
+            block(Rgb::RED),
+            ball(Rgb::GREEN),
             block(Rgb::GREEN),
         ],
         start: Start::HalfThere,

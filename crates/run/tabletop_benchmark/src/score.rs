@@ -33,7 +33,7 @@ const DEMONSTRATIONS: usize = 3;
 const SHOWN: [usize; 3] = [4, 3, 5];
 const TRIED: (usize, usize) = (2, 9);
 /// The teacher chooses the first table from so many, and later ones, which are to correct what was understood, from more.
-const CHOSEN_FROM: usize = 3;
+const CHOSEN_FROM: usize = 6;
 const CORRECTED_ON: usize = 12;
 /// How often a table is drawn on which the program can be done.
 const DRAWS: usize = 60;

@@ -128,7 +128,9 @@ impl fmt::Display for TellFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Impossible(reason) => write!(f, "{reason}"),
-            Self::Step(sentence, failure) => write!(f, "{sentence} {failure}"),
+            Self::Step(sentence, failure) => {
+                write!(f, "{}: {failure}", sentence.trim_end_matches('.'))
+            }
         }
     }
 }

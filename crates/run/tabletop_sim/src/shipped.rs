@@ -17,7 +17,17 @@ use tabletop_storage::{Symlinks, read_regular_text};
 use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 
 /// The folders of a working folder.
-pub const WORKING_FOLDERS: [&str; 5] = ["tablesetup", "matlab", "scenarios", "python", "learners"];
+pub const WORKING_FOLDERS: [&str; 6] = [
+    "tablesetup",
+    "matlab",
+    "scenarios",
+    "python",
+    "learners",
+    ROBOT_FOLDER,
+];
+
+/// That of robots, which holds other files, too.
+pub(crate) const ROBOT_FOLDER: &str = "assets";
 
 /// The contents of those that hold nothing else.
 static CONTENTS: [(&str, Dir); 4] = [
@@ -123,7 +133,7 @@ pub fn read_task(path: &Path) -> Result<ParsedTask, ReadError> {
 /// It is in neither, cannot be read, or has faults, which are listed.
 pub fn read_faultless_task(file: &Path, allowed: &[PathBuf]) -> Result<SceneSpec, String> {
     let task = task_reader().allowing(allowed).read(file);
-    let task = task.map_err(|error| error.to_string() + &way_on(file))?;
+    let task = task.map_err(|error| error.to_string() + &way_on(file, "tablesetup"))?;
     let faults: Vec<_> = task.faults.iter().map(ToString::to_string).collect();
     match faults.is_empty() {
         true => Ok(task.scene),
@@ -146,7 +156,7 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
         Some(file) => Scenario::parse(file.name(), file.text),
         None => Scenario::read(path).map_err(|error| match error {
             ScenarioError::Unreadable { path, reason } => ScenarioError::Unreadable {
-                reason: reason + &way_on(&path),
+                reason: reason + &way_on(&path, "scenarios"),
                 path,
             },
             error @ (ScenarioError::Syntax { .. }
@@ -158,9 +168,9 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
     }
 }
 
-/// What can be done about a path that leads to nothing.
-fn way_on(path: &Path) -> String {
-    match shipped_files().nearest(path) {
+/// What can be done about a path that leads to nothing: the file of this folder that may be meant.
+pub(crate) fn way_on(path: &Path, folder: &str) -> String {
+    match shipped_files().nearest(path, folder) {
         _ if path.exists() => String::new(),
         Some(near) => format!("; did you mean {}?", near.path),
         None => "; `tabletop shipped` lists the files inside the program".into(),
@@ -204,6 +214,9 @@ mod tests {
     fn every_file_of_the_working_folders_is_shipped_as_it_is() {
         let root = root();
         for folder in WORKING_FOLDERS {
+            if folder == ROBOT_FOLDER {
+                continue;
+            }
             let mut paths: Vec<_> = fs::read_dir(root.join(folder))
                 .unwrap()
                 .map(|entry| Path::new(folder).join(entry.unwrap().file_name()))

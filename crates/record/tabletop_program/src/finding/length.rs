@@ -19,30 +19,34 @@ mod part {
     pub const INSTRUCTION: Length = 8;
     pub const CONDITION: Length = 12;
     /// An object by its id, which says nothing of others.
-    pub const ID: Length = 22;
+    pub const ID: Length = 27;
     pub const THE: Length = 2;
     pub const EVERY: Length = 8;
     pub const ANY: Length = 12;
-    pub const COUNT: Length = 10;
+    pub const COUNT: Length = 13;
     pub const MOST: Length = 8;
     pub const KIND: Length = 4;
-    /// A thing of any kind.
-    pub const ANYTHING: Length = 6;
-    pub const COLOR: Length = 4;
-    pub const SIZE: Length = 8;
+    /// A thing of any kind, which people say of things that are alike in another way.
+    pub const ANYTHING: Length = 12;
+    pub const COLOR: Length = 3;
+    pub const SIZE: Length = 12;
     pub const OTHER: Length = 8;
-    pub const RESTRICTION: Length = 10;
+    pub const RESTRICTION: Length = 6;
     pub const FEATURE: Length = 4;
     pub const VALUE: Length = 12;
     pub const PREPOSITION: Length = 2;
     pub const TABLE: Length = 2;
-    pub const SIDE: Length = 6;
+    /// One of four, and three demonstrations on the same side may be chance.
+    pub const SIDE: Length = 11;
     pub const LOCATION: Length = 28;
     pub const PATTERN: Length = 6;
-    pub const NUMBER: Length = 6;
-    /// An order by what objects are, and one by where they are, which may well be chance.
+    pub const NUMBER: Length = 8;
+    /// An order by how objects look, one by where they are, which may well be chance, and one by their weights, which nobody sees.
     pub const ORDER: Length = 8;
     pub const ORDER_OF_PLACES: Length = 14;
+    pub const ORDER_OF_WEIGHTS: Length = 16;
+    /// The same for the order in which things are done: a few things often come in some order of their places.
+    pub const SEQUENCE_OF_PLACES: Length = 20;
     /// A deed that a pattern leaves unexplained, since another one with its object follows. (`a_tower_that_is_moved_is_no_tower_that_is_made`)
     pub const DETOUR: Length = 16;
 }
@@ -81,8 +85,8 @@ pub(crate) fn sentence(sentence: &Sentence) -> Length {
 
 fn instruction(instruction: &Instruction) -> Length {
     let rest = match instruction {
-        Instruction::Put { what, to, first } => noun(what) + place(to) + first.map_or(0, order),
-        Instruction::Remove { what, first } => noun(what) + first.map_or(0, order),
+        Instruction::Put { what, to, first } => noun(what) + place(to) + first.map_or(0, sequence),
+        Instruction::Remove { what, first } => noun(what) + first.map_or(0, sequence),
         Instruction::Open { what } | Instruction::Close { what } => noun(what),
         Instruction::Swap { one, other } => noun(one) + noun(other),
         Instruction::MoveTower { from, to, by } => noun(from) + noun(to) + noun(by),
@@ -92,12 +96,26 @@ fn instruction(instruction: &Instruction) -> Length {
     part::INSTRUCTION + rest
 }
 
-fn order(first: Superlative) -> Length {
+fn sequence(first: Superlative) -> Length {
     match first {
+        Superlative::Leftmost
+        | Superlative::Rightmost
+        | Superlative::Nearest
+        | Superlative::Farthest => part::SEQUENCE_OF_PLACES,
         Superlative::Largest
         | Superlative::Smallest
         | Superlative::Heaviest
         | Superlative::Lightest
+        | Superlative::Tallest
+        | Superlative::Shortest
+        | Superlative::Topmost => order(first),
+    }
+}
+
+fn order(first: Superlative) -> Length {
+    match first {
+        Superlative::Largest
+        | Superlative::Smallest
         | Superlative::Tallest
         | Superlative::Shortest
         | Superlative::Topmost => part::ORDER,
@@ -105,6 +123,7 @@ fn order(first: Superlative) -> Length {
         | Superlative::Rightmost
         | Superlative::Nearest
         | Superlative::Farthest => part::ORDER_OF_PLACES,
+        Superlative::Heaviest | Superlative::Lightest => part::ORDER_OF_WEIGHTS,
     }
 }
 
@@ -134,6 +153,8 @@ fn noun(noun: &Noun) -> Length {
         Noun::Named { .. } => part::ID,
         Noun::Described { quantity, of } => {
             let quantity = match quantity {
+                // One is small or large beside others: then it is the smallest or largest.
+                HowMany::The if of.size.is_some() => part::MOST + part::ORDER,
                 HowMany::The => part::THE,
                 HowMany::Any => part::ANY,
                 HowMany::Every => part::EVERY,

@@ -4,7 +4,7 @@
 use bevy::math::{Quat, Vec3};
 use tabletop_core::ObjectSpec;
 use tabletop_geometry::{Pose, Rgb};
-use tabletop_program::{ProgramRun, TableScene};
+use tabletop_program::{NextAttempt, ProgramAttempts, ProgramRun, TableScene};
 use tabletop_task::{Arrangement, Relation};
 
 use scenes::{chest, container, cube, done, hanoi, on, plate, refused, rehearsed, scene, spread};
@@ -443,6 +443,22 @@ fn a_step_that_failed_comes_again_from_where_things_are() {
     assert_eq!(third.relation, first.relation);
     table = table.after(&third);
     assert_eq!(run.next_on(&table), tabletop_program::NextStep::Done);
+}
+
+/// A robot can make nothing disappear.
+#[test]
+fn removed_objects_that_were_laid_aside_are_out_of_play() {
+    let table = scene(cubes(&[Rgb::RED, Rgb::BLUE, Rgb::RED]));
+    let program = "Remove every red block. Put all blocks in a row.";
+    let mut attempts = ProgramAttempts::begin(&program.parse().unwrap(), &table);
+    let mut removed = Vec::new();
+    while let NextAttempt::Try(attempt) = attempts.next_on(&table) {
+        assert_eq!(attempt.step.relation, Relation::Destroyed);
+        removed.push(attempt.step.object.clone());
+        attempts.did(attempt);
+    }
+    assert_eq!(removed, ["C0", "C2"]);
+    assert_eq!(attempts.next_on(&table), NextAttempt::Done);
 }
 
 #[test]
