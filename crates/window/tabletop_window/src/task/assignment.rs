@@ -38,7 +38,7 @@ pub(super) struct ProgramAssignment {
     attempt: Option<StepAttempt>,
 }
 
-/// What the robot does now: the [`RobotController`](tabletop_controller::RobotController) is an [`Execution`] of this task.
+/// What the robot does now: the [`RobotController`](tabletop_controller::RobotController) is an [`Execution`](tabletop_planner::Execution) of this task.
 pub(super) struct BegunTask {
     pub task: Task,
     /// Ghosts of objects at their goals, with their steps.
