@@ -114,6 +114,7 @@ fn room(object: &Pushed, place: &Nearest, way: f32) -> f32 {
         gap: place.distance,
         way,
         direction: -place.away,
+        retreat: object.retreat(-place.away),
     };
     if approach.is_push() {
         approach.way = way.min(FASTEST_PUSH * TICK_SECONDS);

@@ -1,7 +1,7 @@
 //! Effects of hands on a world.
 
 use bevy::prelude::*;
-use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*};
+use tabletop_core::{ChainSpec, LidBoxSpec, TICK_SECONDS, prelude::*};
 use tabletop_geometry::quat_from_degrees;
 
 use crate::desk::{Desk, block, object, two_blocks};
@@ -165,6 +165,60 @@ fn a_pushed_block_moves_and_is_not_flung_when_the_hand_lets_go() {
             .distance(Vec3::new(-4.0, 0.0, 0.5))
             < 0.1
     );
+}
+
+/// The largest distance of a box from where it is sent, on its way with something in it at a speed, in units/s; and how far that is then from the
+/// middle of the box, seen from above.
+fn lag_of_a_loaded_box(load: Shape, speed: f32) -> (f32, f32) {
+    let span = Vec3::new(3.0, 3.0, 1.5);
+    let tray = Shape::Box {
+        span,
+        color: Rgb::GREEN,
+        thickness: 0.2,
+    };
+    let mut desk = Desk::new(vec![
+        object("tray", (-4.0, 0.0, 0.75), 1.0, tray),
+        object("load", (-4.0, 0.0, 0.6), 1.0, load),
+    ]);
+    desk.grasp(Hand::Right, "tray").step(1);
+    let mut target = Vec3::new(-4.0, 0.0, 0.75);
+    let mut lag = 0.0_f32;
+    for (way, ticks) in [
+        (Vec3::Z, 90),
+        (Vec3::X, 150),
+        (Vec3::Y, 60),
+        (Vec3::NEG_X, 60),
+    ] {
+        for _ in 0..ticks {
+            target += way * speed * TICK_SECONDS;
+            desk.move_to(Hand::Right, target).step(1);
+            lag = lag.max(desk.pose("tray").location.distance(target));
+        }
+    }
+    let [tray, load] = ["tray", "load"].map(|id| desk.pose(id).location);
+    (lag, tray.truncate().distance(load.truncate()))
+}
+
+#[test]
+fn a_box_goes_where_it_is_sent_whatever_lies_or_rolls_in_it() {
+    let ball = || Shape::Sphere {
+        radius: 0.4,
+        color: Rgb::BLUE,
+    };
+    for (load, name) in [(ball(), "ball"), (block(Vec3::splat(0.8)), "block")] {
+        for speed in [0.5, 2.0, 5.0] {
+            let (lag, aside) = lag_of_a_loaded_box(load.clone(), speed);
+            let two_ticks = 2.0 * speed * TICK_SECONDS;
+            assert!(
+                lag < two_ticks,
+                "{name} at {speed}: the box is {lag} behind"
+            );
+            assert!(
+                aside < 1.4,
+                "{name} at {speed}: it is {aside} from the middle"
+            );
+        }
+    }
 }
 
 #[test]

@@ -13,12 +13,15 @@ pub struct Approach {
     pub way: f32,
     /// Normal of the contact, from the solid to the free object.
     pub direction: Vec3,
+    /// How far the free object goes away by itself meanwhile, in units.
+    pub retreat: f32,
 }
 
 impl Approach {
-    /// True if Rapier already has the contact, so that one pushes the other.
+    /// True if Rapier already has the contact, so that one pushes the other, or would have if the object had not gone away: a ball that rolls ahead
+    /// of the wall of a tray is pushed by it.
     pub fn is_push(self) -> bool {
-        self.gap <= TOUCHING
+        self.gap <= TOUCHING + self.retreat
     }
 
     /// The part of its way that the solid can go if the object gives way: it reaches the object in one tick and pushes it from the next one

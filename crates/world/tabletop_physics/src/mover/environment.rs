@@ -25,6 +25,8 @@ pub struct FreeObject {
     pub bounds: Aabb,
     /// The box that it can reach in this tick, with a margin.
     pub vicinity: Aabb,
+    /// Velocity of its centre of mass, in units/s.
+    pub velocity: Vec3,
     /// True while it sleeps.
     pub is_sleeping: bool,
 }
@@ -59,6 +61,7 @@ impl Environment {
                     solids: solids.collect(),
                     bounds: thing.bounds,
                     vicinity: vicinity(&thing),
+                    velocity: thing.body.linvel(),
                     is_sleeping: thing.body.is_sleeping(),
                 });
             } else {

@@ -3,6 +3,7 @@
 use std::{cell::OnceCell, collections::VecDeque, iter};
 
 use bevy::prelude::*;
+use tabletop_core::TICK_SECONDS;
 
 use super::{
     approach::Approach,
@@ -39,6 +40,11 @@ impl<'a> Pushed<'a> {
             .min((room / approach.way).clamp(0.0, 1.0))
     }
 
+    /// How far, in units, the object goes in a direction by itself in a tick.
+    pub fn retreat(&self, direction: Vec3) -> f32 {
+        (self.object.velocity.dot(direction) * TICK_SECONDS).max(0.0)
+    }
+
     /// How far, in units, the object can be pushed in a direction before anything is squeezed more than a push may; without end if it gives
     /// way.
     fn give(&self, direction: Vec3) -> f32 {
@@ -72,7 +78,8 @@ impl Environment {
                 places.filter_map(|place| solid.approach(place))
             });
             let (mut can_go, mut is_pushed) = (1.0_f32, false);
-            for approach in approaches {
+            for mut approach in approaches {
+                approach.retreat = pushed.retreat(approach.direction);
                 can_go = can_go.min(pushed.part(approach));
                 is_pushed |= approach.is_push();
             }

@@ -84,7 +84,7 @@ impl<Owner: Copy> SweptSolid<Owner> {
                 .is_none_or(|here| ahead < here - SAME_DEPTH)
     }
 
-    /// The approach of this solid to a free object's in a tick; `None` if it comes no nearer.
+    /// The approach of this solid to a free object's that stays, in a tick; `None` if it comes no nearer.
     pub fn approach<Other: Copy>(&self, free: &SweptSolid<Other>) -> Option<Approach> {
         let reach = self.from.location.distance(self.to.location)
             + self.from.rotation.angle_between(self.to.rotation) * self.extent();
@@ -94,6 +94,7 @@ impl<Owner: Copy> SweptSolid<Owner> {
             gap: here.dist,
             way: here.dist - ahead,
             direction: here.normal1,
+            retreat: 0.0,
         };
         (approach.way > 0.0).then_some(approach)
     }
