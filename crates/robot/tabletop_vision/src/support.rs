@@ -7,7 +7,8 @@ const BESIDE: f32 = 0.06;
 /// Heights nearer to each other than this, in units, are the same.
 const SAME_HEIGHT: f32 = 1e-3;
 
-/// The heights of an object's origin at which it would stand on the table or on one of the others, at this place, from the lowest on.
+/// The heights of an object's origin at which it would stand on the table or on one of the others, at this place, from the lowest on. Of two that a
+/// picture hardly tells apart, as on the floor of a box and on the table below it, the upper one.
 pub(crate) fn heights<'o>(
     object: &KnownObject,
     placement: &StandingPose,
@@ -19,6 +20,7 @@ pub(crate) fn heights<'o>(
         return heights;
     }
     let own = object.touched(placement);
+    let mut floors = Vec::new();
     for (other, at) in others {
         let between = at.location.truncate() - placement.location.truncate();
         if between.length() > stance.radius + other.stance(at).radius + BESIDE {
@@ -33,9 +35,16 @@ pub(crate) fn heights<'o>(
                 if is_new && gap_from_above(solid, &below) < BESIDE {
                     heights.push(height);
                 }
+                if is_over(solid, &below) {
+                    floors.push(height);
+                }
             }
         }
     }
+    heights.retain(|height| {
+        let is_in = |floor: &f32| (floor - DEEP..floor - SAME_HEIGHT).contains(height);
+        !floors.iter().any(is_in)
+    });
     heights.sort_by(f32::total_cmp);
     heights
 }
@@ -117,19 +126,52 @@ pub(crate) fn has_room(
         let is_beside = |other: &StandingSolid| {
             let common =
                 solid.heights[1].min(other.heights[1]) - solid.heights[0].max(other.heights[0]);
-            let [a, b] = [solid, other].map(|it| it.center.truncate());
-            let way = (a - b).normalize_or_zero().extend(0.0);
-            common < deep
-                || a.distance(b) > solid.radius + other.radius
-                || solid.solid.moved(way * DEEP).gap_from_above(&other.solid) > 0.0
+            common < deep || !is_over(solid, other)
         };
         others.iter().all(is_beside)
     })
 }
 
+/// True if a solid shares more room with another, seen from above, than estimates that are not exact may.
+fn is_over(one: &StandingSolid, other: &StandingSolid) -> bool {
+    let [a, b] = [one, other].map(|it| it.center.truncate());
+    let way = (a - b).normalize_or_zero().extend(0.0);
+    a.distance(b) <= one.radius + other.radius
+        && one.solid.moved(way * DEEP).gap_from_above(&other.solid) <= 0.0
+}
+
 #[cfg(test)]
 mod tests {
+    use bevy::math::Vec3;
+    use tabletop_core::Shape;
+    use tabletop_geometry::{Pose, Rgb};
+
     use super::*;
+
+    /// The heights at which a ball may stand, this far from the middle of a box with a floor of 0.1.
+    fn heights_at_a_box(aside: f32) -> Vec<f32> {
+        let ball = KnownObject::of(&Shape::Sphere {
+            radius: 0.5,
+            color: Rgb::RED,
+        });
+        let container = KnownObject::of(&Shape::Box {
+            span: Vec3::new(4.0, 4.0, 1.4),
+            thickness: 0.1,
+            color: Rgb::GRAY,
+        });
+        let [here, there] = [(&ball, aside, 0.5), (&container, 0.0, 0.7)]
+            .map(|(object, x, z)| object.placement(Pose::at(Vec3::new(x, 0.0, z))));
+        heights(&ball, &here, [(&container, &there)])
+    }
+
+    #[test]
+    fn the_floor_of_a_box_hides_the_table_below_it() {
+        let is_near = |one: f32, other: f32| (one - other).abs() < 1e-4;
+        let inside = heights_at_a_box(1.0);
+        assert!(is_near(inside[0], 0.6), "{inside:?}");
+        let beside = heights_at_a_box(3.0);
+        assert!(beside.len() == 1 && is_near(beside[0], 0.5), "{beside:?}");
+    }
 
     #[test]
     fn a_hidden_pile_ends_below_the_next_support() {

@@ -180,9 +180,14 @@ fn known_objects(
 
 impl Watched {
     fn see(&mut self, tick: SimTick, seen: &ObjectPercept, still: (f32, f32)) {
+        // What is hidden may be anywhere, but the eyes leave it where it was.
+        let slack = |deviation: f32| match deviation.is_finite() {
+            true => CERTAIN * deviation,
+            false => 0.0,
+        };
         let still = (
-            still.0 + CERTAIN * seen.deviation.location.length(),
-            still.1 + CERTAIN * seen.deviation.yaw,
+            still.0 + slack(seen.deviation.location.length()),
+            still.1 + slack(seen.deviation.yaw),
         );
         let pose = seen.pose.map(|pose| match self.pose {
             Some(before) => self.known.turned_least(pose, before.rotation),

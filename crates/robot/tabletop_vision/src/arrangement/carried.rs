@@ -34,9 +34,9 @@ impl ObjectArrangement<'_, '_> {
             let stood = || {
                 let other_was = before[other].as_ref();
                 let other_was = other_was.map(|at| (&self.objects[other], at));
+                let table = -known.stance(&was).low;
                 let heights = support::heights(known, &was, other_was);
-                // The first height is that of the table.
-                let mut seats = heights.iter().filter(|height| **height > heights[0]);
+                let mut seats = heights.iter().filter(|height| **height > table);
                 seats.any(|height| (height - was.location.z).abs() < STANDING)
             };
             other != object

@@ -111,8 +111,13 @@ impl ObjectArrangement<'_, '_> {
         if !known.is_fixed() && !is_good {
             let here = settled;
             refinement.is_free = true;
-            let (free, free_trial) = refinement.refined(here, &FINE);
+            let (mut free, mut free_trial) = refinement.refined(here, &FINE);
             refinement.is_free = false;
+            let table = -known.stance(&free).low;
+            if free.location.z < table {
+                // Where the table would hide it.
+                (free, free_trial) = refinement.refined(free.at_height(table, eye), &FINE);
+            }
             // What is not seen may be hidden between it and a support.
             let unseen = self.objects.iter().zip(&self.placements).enumerate();
             let unseen = unseen.filter(|(i, (_, placement))| placement.is_none() && !is_own(*i));
