@@ -3,9 +3,8 @@
 use bevy::prelude::*;
 use tabletop_controller::Sight;
 use tabletop_core::StepApp as _;
-use tabletop_geometry::Pose;
 use tabletop_planner::{Before, PlanFailure, undone};
-use tabletop_task::{Binding, Task, angle_between};
+use tabletop_task::{Binding, PlaceRange, Symmetry, Task, TaskStep};
 
 /// Number of ticks after the end for which objects must stay.
 const LASTING: u64 = 180;
@@ -25,19 +24,22 @@ pub(super) fn lasts(
     app.step(LASTING);
     let later = Sight::of(app.world_mut());
     let stays = |id: &str| match (ended.objects.get(id), later.objects.get(id)) {
-        (Some(one), Some(other)) => is_near(one.pose, other.pose),
+        (Some(one), Some(other)) => {
+            let (moved, turned) = Symmetry::of(&one.shape).difference(one.pose, other.pose);
+            moved < STILL_LENGTH && turned < STILL_ANGLE
+        }
         (None, None) => true,
         (Some(_), None) | (None, Some(_)) => false,
     };
-    let placed = task.steps.iter().filter(|step| step.goal.is_some());
+    // What rolls in a bowl is still in it.
+    let has_place = |step: &&TaskStep| {
+        let goal = step.goal.as_ref();
+        goal.is_some_and(|goal| goal.place != PlaceRange::Inside)
+    };
+    let placed = task.steps.iter().filter(has_place);
     let mut placed = placed.filter_map(|step| Some((step.number, binding.object(&step.object)?)));
     if let Some((number, id)) = placed.find(|(_, id)| !stays(id)) {
         return Err((number, PlanFailure::Misplaced(id.to_owned())));
     }
     undone(task, binding, &later, before).map_or(Ok(()), Err)
-}
-
-fn is_near(a: Pose, b: Pose) -> bool {
-    a.location.distance(b.location) < STILL_LENGTH
-        && angle_between(a.rotation, b.rotation) < STILL_ANGLE
 }
