@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use crate::{
     benchmark::{
-        BenchmarkLesson, LESSONS, RobotTrials, Score, TeachingResult, TrialRobot, table,
+        BenchmarkLesson, LESSONS, RobotTrials, Score, Teacher, TeachingResult, TrialRobot, table,
         trials_table,
     },
     robot::RobotPlugin,
@@ -40,6 +40,9 @@ pub(super) struct BenchmarkArgs {
     /// Let the robot do each program that is right in the end on so many further tables with two to nine objects, from 1 to 10000, and print how often it is done
     #[arg(long, value_name = "N", value_parser = TABLES, allow_negative_numbers = true)]
     trials: Option<usize>,
+    /// Let the demonstrations be understood from pictures of the head camera alone, as `tabletop watch` does
+    #[arg(long)]
+    watch: bool,
     /// Print what was found for each program, too
     #[arg(long)]
     programs: bool,
@@ -51,7 +54,7 @@ pub(super) struct BenchmarkArgs {
 }
 
 /// The options of taught programs.
-const OF_TEACHING: [&str; 4] = ["seed", "tables", "trials", "programs"];
+const OF_TEACHING: [&str; 5] = ["seed", "tables", "trials", "watch", "programs"];
 
 /// Teaches programs by demonstrations, and says how many were understood; or judges a policy.
 pub(super) fn benchmark(args: &BenchmarkArgs) -> Result<ExitCode, Failure> {
@@ -62,6 +65,10 @@ pub(super) fn benchmark(args: &BenchmarkArgs) -> Result<ExitCode, Failure> {
     let lessons = args.lessons()?;
     let robot = args.trials.map(|_| TrialRobot::new(RobotPlugin::default()));
     let robot = robot.transpose().map_err(Failure::run)?;
+    let teacher = match args.watch {
+        true => Teacher::Showing,
+        false => Teacher::Telling,
+    };
     let (mut scores, mut trials) = (Vec::new(), Vec::new());
     run_episodes(
         0..lessons.len() as u64,
@@ -69,7 +76,7 @@ pub(super) fn benchmark(args: &BenchmarkArgs) -> Result<ExitCode, Failure> {
         |number| {
             let seed = args.seed.wrapping_add(number);
             let lesson = lessons[number as usize];
-            let score = Score::of(lesson, seed, args.tables).map_err(Failure::run)?;
+            let score = Score::of(lesson, teacher, seed, args.tables).map_err(Failure::run)?;
             let trials = robot.as_ref().zip(args.trials);
             let trials = trials.and_then(|(robot, tables)| tried(&score, robot, seed, tables));
             Ok::<_, Failure>((score, trials))

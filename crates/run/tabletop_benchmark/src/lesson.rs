@@ -36,8 +36,9 @@ pub(crate) enum Start {
     Rings,
 }
 
-/// The table, in units.
-const TABLE: (f32, f32) = (30.0, 18.0);
+/// A wide table, and one that the head camera sees as a whole, in units.
+pub(crate) const WIDE: (f32, f32) = (30.0, 18.0);
+pub(crate) const SEEN: (f32, f32) = (20.0, 12.0);
 /// Room around pieces, in units.
 const CLEAR: f32 = 0.6;
 /// How often a place is drawn before a table is given up.
@@ -52,14 +53,19 @@ impl BenchmarkLesson {
         self.sentences.parse()
     }
 
-    /// A table with so many pieces, if there is room.
-    pub(crate) fn scene(&self, count: usize, random: &mut Random) -> Option<TableScene> {
+    /// A table of this size with so many pieces, if there is room.
+    pub(crate) fn scene(
+        &self,
+        count: usize,
+        table: (f32, f32),
+        random: &mut Random,
+    ) -> Option<TableScene> {
         let mut scene = TableScene::default();
-        (scene.table.xspan, scene.table.yspan) = TABLE;
+        (scene.table.xspan, scene.table.yspan) = table;
         let mut taken = Vec::<(Vec3, f32)>::new();
         let mut first = Vec3::ZERO;
         for (number, prop) in self.props.iter().enumerate() {
-            let at = place(random, &mut taken, prop.reach(), (-1.0, 1.0))?;
+            let at = place(random, table, &mut taken, prop.reach(), (-1.0, 1.0))?;
             let (objects, joints) = prop.objects(number, at, random.one_of([true, false]));
             scene.objects.extend(objects);
             scene.joints.extend(joints);
@@ -89,8 +95,8 @@ impl BenchmarkLesson {
             };
             match self.start {
                 Start::Twins => {
-                    let model = place(random, &mut taken, 1.0, (-0.9, -0.15))?;
-                    let twin = place(random, &mut taken, 1.0, (0.15, 0.9))?;
+                    let model = place(random, table, &mut taken, 1.0, (-0.9, -0.15))?;
+                    let twin = place(random, table, &mut taken, 1.0, (0.15, 0.9))?;
                     let mut twin = piece.object(number, twin);
                     twin.id = format!("Twin{}", twin.id);
                     scene.objects.extend([piece.object(number, model), twin]);
@@ -103,7 +109,8 @@ impl BenchmarkLesson {
                             object.pose.location.z += floor(scene.objects.first()?);
                             object
                         }
-                        false => piece.object(number, place(random, &mut taken, 1.0, (-1.0, 1.0))?),
+                        false => piece
+                            .object(number, place(random, table, &mut taken, 1.0, (-1.0, 1.0))?),
                     };
                     scene.objects.push(object);
                 }
@@ -131,13 +138,14 @@ fn spot_within(number: usize) -> Vec3 {
 /// A free place on a part of the table, as shares of its width.
 fn place(
     random: &mut Random,
+    table: (f32, f32),
     taken: &mut Vec<(Vec3, f32)>,
     reach: f32,
     (low, high): (f32, f32),
 ) -> Option<Vec3> {
-    let half = Vec3::new(TABLE.0, TABLE.1, 0.0) / 2.0 - reach;
+    let half = Vec3::new(table.0, table.1, 0.0) / 2.0 - reach;
     for _ in 0..DRAWS {
-        let x = random.between((low * TABLE.0 / 2.0, high * TABLE.0 / 2.0));
+        let x = random.between((low * table.0 / 2.0, high * table.0 / 2.0));
         let y = random.between((-half.y, half.y));
         let at = Vec3::new(x.clamp(-half.x, half.x), y, 0.0);
         let is_free = |(other, its): &(Vec3, f32)| other.distance(at) > its + reach + CLEAR;

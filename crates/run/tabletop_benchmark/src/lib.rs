@@ -1,7 +1,7 @@
 //! Benchmarks: what is understood of task programs that are taught by demonstrations, and how often policies do tasks.
 //!
 //! A [`BenchmarkLesson`] has a true program and tables at random. It is taught by one to three demonstrations that the program itself makes, with detours and
-//! in random order. What is understood is compared with the true program by what both do on other tables.
+//! in random order, whose poses are told or which is watched through the head camera. What is understood is compared with the true program by what both do on other tables.
 //!
 //! [`RobotTrials`] let a robot do what was understood on further tables.
 //!
@@ -10,6 +10,7 @@
 mod judging;
 mod lesson;
 mod lessons;
+mod pictures;
 mod props;
 mod score;
 mod showing;
@@ -23,6 +24,6 @@ pub use judging::{
 };
 pub use lesson::BenchmarkLesson;
 pub use lessons::LESSONS;
-pub use score::{Score, TeachingResult};
+pub use score::{Score, Teacher, TeachingResult};
 pub use table::{table, trials_table};
 pub use trials::{RobotTrials, TrialRobot};

@@ -1,9 +1,54 @@
 //! What is understood of lessons.
 
+use std::cmp::Reverse;
+
 use tabletop_core::Random;
 use tabletop_program::{Example, Meaning, SentenceError, TableScene, TaskProgram};
+use tabletop_task::{Demonstration, Task};
 
-use crate::{lesson::BenchmarkLesson, showing::shown};
+use crate::{
+    lesson::{BenchmarkLesson, SEEN, WIDE},
+    pictures::{is_in_view, watched},
+    showing::shown,
+};
+
+/// How a learner comes to know demonstrations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Teacher {
+    /// It is told where everything is.
+    Telling,
+    /// It sees pictures of the head camera, and knows what the objects are.
+    Showing,
+}
+
+impl Teacher {
+    /// The size of the table of demonstrations, in units.
+    const fn table(self) -> (f32, f32) {
+        match self {
+            Self::Telling => WIDE,
+            Self::Showing => SEEN,
+        }
+    }
+
+    /// True if the learner can come to know all of a demonstration.
+    fn can_show(self, shown: &Demonstration) -> bool {
+        match self {
+            Self::Telling => true,
+            Self::Showing => is_in_view(shown),
+        }
+    }
+
+    fn example(self, shown: &Demonstration) -> Option<Example> {
+        match self {
+            Self::Telling => told(shown),
+            Self::Showing => told(&watched(shown)?),
+        }
+    }
+}
+
+fn told(shown: &Demonstration) -> Option<Example> {
+    Example::of(shown, &Task::of(shown))
+}
 
 /// What was understood of a lesson after each demonstration.
 #[derive(Clone, Debug)]
@@ -36,15 +81,16 @@ const TRIED: (usize, usize) = (2, 9);
 const CHOSEN_FROM: usize = 6;
 const CORRECTED_ON: usize = 12;
 /// How often a table is drawn on which the program can be done.
-const DRAWS: usize = 60;
+const DRAWS: usize = 240;
 
 impl Score {
-    /// Teaches a lesson, and tries what is understood on so many other tables.
+    /// Teaches a lesson in this way, and tries what is understood on so many other tables.
     ///
     /// # Errors
     /// The lesson's program is none.
     pub fn of(
         lesson: &'static BenchmarkLesson,
+        teacher: Teacher,
         seed: u64,
         tables: usize,
     ) -> Result<Self, SentenceError> {
@@ -56,7 +102,8 @@ impl Score {
         let mut understood = None;
         for number in 0..DEMONSTRATIONS {
             let count = SHOWN[number % SHOWN.len()];
-            let example = lesson.example(&program, count, understood.as_ref(), &mut random);
+            let before = understood.as_ref();
+            let example = lesson.example(teacher, &program, count, before, &mut random);
             examples.extend(example);
             let meaning = Meaning::of(&examples);
             let is_same = |other: &TaskProgram| {
@@ -84,38 +131,40 @@ impl BenchmarkLesson {
     /// would do something else, if there is one, and else on the one on which there is most to do.
     fn example(
         &self,
+        teacher: Teacher,
         program: &TaskProgram,
         count: usize,
         understood: Option<&TaskProgram>,
         random: &mut Random,
     ) -> Option<Example> {
-        let mut most: Option<Example> = None;
+        let mut others = Vec::new();
         let mut left = match understood {
             Some(_) => CORRECTED_ON,
             None => CHOSEN_FROM,
         };
         for draw in 0..DRAWS {
             let more = draw / (DRAWS / 4);
-            let scene = self.scene(count.max(self.least) + more, random);
+            let scene = self.scene(count.max(self.least) + more, teacher.table(), random);
             let shown = scene.and_then(|scene| Some((shown(program, &scene, random)?, scene)));
-            let Some((shown, scene)) = shown else {
+            let Some((shown, scene)) = shown.filter(|(shown, _)| teacher.can_show(shown)) else {
                 continue;
             };
-            if understood.is_some_and(|understood| !understood.acts_like(program, &scene)) {
-                return Some(shown);
-            }
-            if most
-                .as_ref()
-                .is_none_or(|most| shown.steps() > most.steps())
-            {
-                most = Some(shown);
+            let Some(steps) = told(&shown).map(|example| example.steps()) else {
+                continue;
+            };
+            let corrects = understood.is_some_and(|it| !it.acts_like(program, &scene));
+            let correction = corrects.then(|| teacher.example(&shown)).flatten();
+            match correction {
+                Some(example) => return Some(example),
+                None => others.push((Reverse(steps), shown)),
             }
             left -= 1;
             if left == 0 {
                 break;
             }
         }
-        most
+        others.sort_by_key(|(steps, _)| *steps);
+        others.iter().find_map(|(_, shown)| teacher.example(shown))
     }
 
     /// Other tables on which the program can be done.
@@ -124,7 +173,7 @@ impl BenchmarkLesson {
         let least = least.max(self.least);
         let numbers = (0..count).map(|i| least + i % (most - least + 1));
         let tables = numbers.filter_map(|number| {
-            let mut draws = (0..DRAWS).filter_map(|_| self.scene(number, random));
+            let mut draws = (0..DRAWS).filter_map(|_| self.scene(number, WIDE, random));
             draws.find(|scene| Example::of_program(program, scene).is_ok())
         });
         tables.collect()

@@ -3,18 +3,20 @@
 use bevy::math::Vec3;
 use tabletop_core::{Hand, Manipulator, Random, SimTick};
 use tabletop_geometry::Pose;
-use tabletop_program::{Example, ProgramRun, TableScene, TaskProgram};
-use tabletop_task::{ActDeed, Demonstration, ShownAct, Task, Track};
+use tabletop_program::{ProgramRun, TableScene, TaskProgram};
+use tabletop_task::{ActDeed, Demonstration, ShownAct, Track};
 
 /// Number of ticks that a step takes.
 const STEP: u64 = 100;
+/// Height to which an object is lifted, in units.
+const LIFT: f32 = 2.5;
 
 /// A demonstration of a program on a table, with a detour at random. `None` if it cannot be done there.
 pub(crate) fn shown(
     program: &TaskProgram,
     scene: &TableScene,
     random: &mut Random,
-) -> Option<Example> {
+) -> Option<Demonstration> {
     let (steps, _, failure) = ProgramRun::rehearsed(program, scene);
     if failure.is_some() {
         return None;
@@ -37,8 +39,7 @@ pub(crate) fn shown(
         }
         hand.carries(&before, &now, &step.object, step.pose);
     }
-    let shown = hand.demonstration(scene);
-    Example::of(&shown, &Task::of(&shown))
+    Some(hand.demonstration(scene))
 }
 
 /// A hand that moves objects.
@@ -86,7 +87,7 @@ impl ShowingHand {
                     if from.pose == to.pose && other != id {
                         continue;
                     }
-                    let up = if is_slid { 0.0 } else { 6.0 };
+                    let up = if is_slid { 0.0 } else { LIFT };
                     let over = Pose::new(from.pose.location + Vec3::Z * up, from.pose.rotation);
                     track.push(SimTick(tick + 20), over);
                     track.push(SimTick(tick + 40), to.pose);

@@ -17,7 +17,7 @@ use tabletop_robot::RobotPlugin;
 use tabletop_scene::{IdAllocator, assemble};
 use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
-use crate::lesson::BenchmarkLesson;
+use crate::lesson::{BenchmarkLesson, WIDE};
 
 /// What a robot did of a program on other tables.
 #[derive(Clone, Debug)]
@@ -147,7 +147,7 @@ impl BenchmarkLesson {
         random: &mut Random,
     ) -> Option<SceneSpec> {
         (0..DRAWS).find_map(|_| {
-            let drawn = before_robot(self.scene(count, random)?);
+            let drawn = before_robot(self.scene(count, WIDE, random)?);
             let scene = scattered(&drawn, &[], Some(body), random.bits())?;
             let (steps, _, impossible) = ProgramRun::rehearsed(program, &table_of(&scene));
             (impossible.is_none() && !steps.is_empty()).then_some(scene)

@@ -16,4 +16,4 @@ pub use beginning::scene_at_beginning;
 pub use collection::{Collection, CollectionError};
 pub use recorded_robot::RecordedRobot;
 pub use robot_body::robot_body;
-pub use still_scene::StillScene;
+pub use still_scene::{StillScene, has_in_view};

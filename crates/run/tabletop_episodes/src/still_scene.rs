@@ -158,7 +158,7 @@ impl StillScene {
 }
 
 /// True if a camera sees all of a shape with this pose, were nothing before it.
-pub(crate) fn has_in_view(camera: &Camera, shape: &Shape, pose: Pose) -> bool {
+pub fn has_in_view(camera: &Camera, shape: &Shape, pose: Pose) -> bool {
     let last = [camera.width, camera.height].map(|side| side as f32 - 1.0);
     let sees = |point: Vec3| {
         let pixel = camera.pixel_of(point);
