@@ -336,7 +336,7 @@ fn a_pushed_object_is_mentioned() {
     assert_eq!(lines.len(), 2, "{lines:?}");
     assert!(
         lines[1]
-            .starts_with("- On its way, the red block moves the green block by 3.1, to (-5.1, "),
+            .starts_with("- On its way, the red block moves the green block by 2.8, to (-4.8, "),
         "{lines:?}"
     );
     // One that is carried along is not.

@@ -27,12 +27,13 @@ pub(crate) fn watched(shown: &Demonstration) -> Option<Demonstration> {
     is_sure.then(|| watcher.demonstration())
 }
 
-/// True if the head camera sees all objects wherever they are in a demonstration, were nothing before them.
+/// True if the head camera sees all objects wherever they are in a demonstration, were nothing before them; and none disappears, which no eyes
+/// can tell from one that is hidden.
 pub(crate) fn is_in_view(shown: &Demonstration) -> bool {
     let camera = Camera::of_head(&HeadCamera::default(), &shown.table);
     shown.objects.iter().all(|object| {
         let mut poses = object.track.between(shown.start, shown.end);
-        poses.all(|pose| has_in_view(&camera, &object.spec.shape, pose))
+        object.deleted.is_none() && poses.all(|pose| has_in_view(&camera, &object.spec.shape, pose))
     })
 }
 
