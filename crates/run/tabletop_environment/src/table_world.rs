@@ -86,7 +86,8 @@ impl Default for WorldOptions {
 ///     beginning: WorldOrigin::Setup("tablesetup/default.xml".into()),
 ///     ..WorldOptions::default()
 /// })?;
-/// world.perform(r#"Grasp("RedBlock"), Glide(to: (-2, 0, 4), seconds: 1), Glide(to: (-2, 0, 3), seconds: 1), Release"#)?;
+/// world.perform(r#"Grasp("RedBlock"), Glide(to: (2, 0, 4), seconds: 1), Glide(to: (-2, 0, 4), seconds: 1)"#)?;
+/// world.perform(r#"Glide(to: (-2, 0, 3), seconds: 1), Release"#)?;
 /// let before = world.snapshot();
 /// world.step(60);
 /// world.perform(r#"Expect(OnTopOf(object: "RedBlock", of: "GreenBlock"))"#).unwrap_err(); // It must have been at rest.
