@@ -134,7 +134,7 @@ fn names_without_folder_and_ending_lead_to_shipped_files() {
             "scenarios/stack_three.ron",
         ),
         (["robot", "check", "panda"], "assets/panda/robot.ron"),
-        (["run", "--setup", "bloks"], "tablesetup/blocks.xml"),
+        (["run", "--setup", "block"], "tablesetup/blocks.xml"),
     ] {
         let refused = tabletop(&args);
         assert_eq!(refused.status.code(), Some(2), "{args:?}");

@@ -125,16 +125,20 @@ fn a_killed_edit_leaves_nothing_of_its_name() {
     fs::create_dir(&folder).unwrap();
     let out = folder.join("out");
     let to = out.to_str().unwrap();
-    let mut edit = command(&["edit", &demo, to, "--retime", "1=100"])
-        .spawn()
-        .unwrap();
+    // All segments, so that it lasts.
+    let retimed = ["1=100", "2=100", "3=100", "4=100"].map(|segment| ["--retime", segment]);
+    let edit = ["edit", &demo, to];
+    let edit: Vec<_> = edit
+        .into_iter()
+        .chain(retimed.into_iter().flatten())
+        .collect();
+    let mut edit = command(&edit).spawn().unwrap();
     let is_begun = || fs::read_dir(&folder).unwrap().count() >= 2;
     // The hidden folder and its lock.
     while !is_begun() {
         assert_eq!(edit.try_wait().unwrap(), None, "it has ended");
         thread::sleep(Duration::from_millis(5));
     }
-    thread::sleep(Duration::from_millis(100));
     edit.kill().unwrap();
     edit.wait().unwrap();
     assert!(!out.exists());
