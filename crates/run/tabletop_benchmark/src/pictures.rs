@@ -63,7 +63,7 @@ mod tests {
     use super::*;
     use crate::{LESSONS, lesson::SEEN, showing::shown};
 
-    /// Balls roll out of nobody's sight, and the floor of a box is little above the table.
+    /// The floor is little above the table, and the walls hide parts of what lies on it.
     #[test]
     fn balls_are_seen_on_the_floor_of_a_box() {
         let lesson = LESSONS

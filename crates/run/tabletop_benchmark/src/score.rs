@@ -152,11 +152,13 @@ impl BenchmarkLesson {
             let Some(steps) = told(&shown).map(|example| example.steps()) else {
                 continue;
             };
-            let corrects = understood.is_some_and(|it| !it.acts_like(program, &scene));
-            let correction = corrects.then(|| teacher.example(&shown)).flatten();
-            match correction {
-                Some(example) => return Some(example),
-                None => others.push((Reverse(steps), shown)),
+            if understood.is_some_and(|it| !it.acts_like(program, &scene)) {
+                let correction = teacher.example(&shown);
+                if correction.is_some() {
+                    return correction;
+                }
+            } else {
+                others.push((Reverse(steps), shown));
             }
             left -= 1;
             if left == 0 {
