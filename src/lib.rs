@@ -37,6 +37,7 @@
 //! | [`export`] | Recordings as datasets of other tools |
 //! | [`policy`] | A policy learned from one demonstration: from the head camera's picture to what is to be taken next, and where it is to be put |
 //! | [`report`] | Recordings as pages that a browser shows without network: what was done, a player of the pictures, plots and numbers of one recording, or a table of many; and how often a policy did tasks |
+//! | [`training`] | Training episodes: recordings as learners read them, in frames at equal intervals, each with a state, an action and pictures, and the task in sentences |
 //! | [`wire`] | Policies by wire: openpi's protocol, a client and a server of it, and the mappings of its keys to a robot |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
@@ -99,6 +100,7 @@ pub use tabletop_sim::{
 };
 pub use tabletop_storage as storage;
 pub use tabletop_task as task;
+pub use tabletop_training as training;
 #[cfg(feature = "window")]
 pub use tabletop_user as user;
 pub use tabletop_validation as validation;

@@ -5,10 +5,10 @@ use std::{ffi::OsString, path::PathBuf, process::ExitCode, thread, time::Instant
 use crate::{
     core::TICKS_PER_SECOND,
     export::{
-        ActionKind, DatasetFormat, EpisodeSelection, ExportError, ExportSummary, LeRobot, Matlab,
-        Mcap, PictureSelection, Rlds, Robomimic, StateKind, export,
+        DatasetFormat, ExportError, ExportSummary, LeRobot, Matlab, Mcap, Rlds, Robomimic, export,
     },
     recorder::RecordingReader,
+    training::{ActionKind, EpisodeSelection, PictureSelection, StateKind},
 };
 use clap::{Args, ValueEnum};
 

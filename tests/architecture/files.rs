@@ -62,7 +62,7 @@ const CHANGING: [&str; 8] = [
 ];
 
 /// The beginnings of the paths of the files that read what strangers have recorded, exported or taken pictures of.
-const READING_STRANGERS: [&str; 10] = [
+const READING_STRANGERS: [&str; 11] = [
     "crates/data/tabletop_dataset/",
     "crates/run/tabletop_episodes/",
     "crates/data/tabletop_export/",
@@ -72,6 +72,7 @@ const READING_STRANGERS: [&str; 10] = [
     "crates/run/tabletop_replay/",
     "crates/data/tabletop_report/",
     "crates/record/tabletop_task/",
+    "crates/data/tabletop_training/",
     "src/cli",
 ];
 

@@ -2,7 +2,8 @@
 
 use std::{fs, path::Path};
 
-use tabletop_export::{ExportError, LeRobotReader, TrainingEpisode, read_robomimic};
+use tabletop_export::{ExportError, LeRobotReader, read_robomimic};
+use tabletop_training::TrainingEpisode;
 
 use super::{
     kind::copy,

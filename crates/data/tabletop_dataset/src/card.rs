@@ -6,9 +6,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tabletop_export::Image;
 use tabletop_recorder::{RecordedFrame, RecordingReader};
 use tabletop_storage::{InnerPath, Storage, WriterLock, is_taken};
+use tabletop_training::Image;
 
 use crate::{
     error::DatasetError,

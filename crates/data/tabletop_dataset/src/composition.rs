@@ -5,9 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tabletop_export::{DatasetFormat as _, LeRobot, LeRobotReader, TrainingEpisode};
+use tabletop_export::{DatasetFormat as _, LeRobot, LeRobotReader};
 use tabletop_recorder::RecordingReader;
 use tabletop_storage::{InnerPath, Storage};
+use tabletop_training::TrainingEpisode;
 
 use crate::{
     error::DatasetError,

@@ -5,6 +5,7 @@ use std::{io, path::PathBuf};
 use tabletop_export::ExportError;
 use tabletop_recorder::RecorderError;
 use tabletop_replay::ReplayError;
+use tabletop_training::EpisodeError;
 
 /// The error of a dataset, or of a recording that is to be one of it.
 #[derive(Debug, thiserror::Error)]
@@ -15,6 +16,9 @@ pub enum DatasetError {
     /// A dataset cannot be read or written.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// A recording cannot be read as an episode.
+    #[error(transparent)]
+    Episode(#[from] EpisodeError),
     /// A recording cannot be simulated again.
     #[error(transparent)]
     Replay(#[from] ReplayError),
@@ -42,6 +46,7 @@ impl DatasetError {
         match self {
             Self::Recording(error) => error.is_of_input(),
             Self::Export(error) => error.is_of_input(),
+            Self::Episode(error) => error.is_of_input(),
             Self::Replay(error) => !matches!(error, ReplayError::Record(_)),
             Self::Unfit { .. } => true,
             Self::Io { .. } => false,

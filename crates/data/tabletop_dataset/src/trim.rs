@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use tabletop_core::{Actor, RecordingCommand, SimCommand, SimTick};
-use tabletop_export::TrainingEpisode;
 use tabletop_recorder::{
     RecorderPlugin, RecordingReader, Session, SessionCommand, TICKS_PER_FRAME,
 };
 use tabletop_replay::Replay;
 use tabletop_storage::Storage;
+use tabletop_training::TrainingEpisode;
 
 use crate::{
     composition::write_dataset,

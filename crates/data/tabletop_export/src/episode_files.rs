@@ -7,8 +7,9 @@ use std::{
 };
 
 use tabletop_storage::{InnerPath, Storage, WriterLock, is_taken};
+use tabletop_training::TrainingEpisode;
 
-use crate::{episode::TrainingEpisode, error::ExportError, format::DatasetFormat};
+use crate::{error::ExportError, format::DatasetFormat};
 
 /// A kind of file that holds an episode.
 pub trait EpisodeFile {

@@ -3,24 +3,16 @@
 use std::{io, path::PathBuf};
 
 use tabletop_film::FilmError;
-use tabletop_recorder::RecorderError;
-use tabletop_replay::ReplayError;
-use tabletop_task::RequirementError;
+use tabletop_training::EpisodeError;
 use thiserror::Error;
 
 /// The error of an export.
 #[derive(Debug, Error)]
 pub enum ExportError {
-    /// A recording cannot be read.
+    /// A recording cannot be read as an episode.
     #[error(transparent)]
-    Recording(#[from] RecorderError),
-    /// The requirements of a recording's task cannot be read.
-    #[error(transparent)]
-    Requirements(#[from] RequirementError),
-    /// A recording cannot be simulated again.
-    #[error(transparent)]
-    Replay(#[from] ReplayError),
-    /// Pictures cannot be made.
+    Episode(#[from] EpisodeError),
+    /// A video cannot be encoded or decoded.
     #[error(transparent)]
     Film(#[from] FilmError),
     /// A recording does not fit the dataset.
@@ -53,12 +45,8 @@ impl ExportError {
     /// Whether the user's input is at fault, and not the disk.
     pub const fn is_of_input(&self) -> bool {
         match self {
-            Self::Recording(_)
-            | Self::Requirements(_)
-            | Self::Replay(_)
-            | Self::Film(_)
-            | Self::Unfit { .. }
-            | Self::Dataset { .. } => true,
+            Self::Episode(error) => error.is_of_input(),
+            Self::Film(_) | Self::Unfit { .. } | Self::Dataset { .. } => true,
             Self::Io { .. } => false,
         }
     }

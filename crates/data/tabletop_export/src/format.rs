@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use tabletop_sim::run_episodes;
+use tabletop_training::{EpisodeSelection, TrainingEpisode};
 
-use crate::{episode::TrainingEpisode, error::ExportError, selection::EpisodeSelection};
+use crate::error::ExportError;
 
 /// A dataset that is being written.
 pub trait DatasetFormat {
@@ -54,7 +55,7 @@ pub fn export<F: DatasetFormat>(
     let mut summary = ExportSummary::default();
     let prepare = |number: u64| {
         let recording = &recordings[number as usize];
-        TrainingEpisode::read(recording, selection).and_then(F::prepare)
+        F::prepare(TrainingEpisode::read(recording, selection)?)
     };
     run_episodes(0..recordings.len() as u64, jobs, prepare, |_, prepared| {
         summary.frames += format.write(prepared)?;

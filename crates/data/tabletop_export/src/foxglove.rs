@@ -6,9 +6,9 @@ use bevy::math::{Quat, Vec3};
 use mcap::{McapError, WriteOptions, Writer, records::MessageHeader};
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
 use tabletop_geometry::{self as geometry, Primitive, Solid};
+use tabletop_training::{CameraTrack, FrameVectors, ObjectTrack, TrainingEpisode};
 
 use crate::{
-    episode::{CameraTrack, FrameVectors, ObjectTrack, TrainingEpisode},
     episode_files::{EpisodeFile, EpisodeFiles},
     foxglove_messages::{
         Color, CompressedImage, CubePrimitive, CylinderPrimitive, FrameTransform, FrameTransforms,

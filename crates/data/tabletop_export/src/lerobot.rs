@@ -36,6 +36,7 @@ use std::{
 };
 
 use tabletop_storage::{InnerPath, Storage, WriterLock, is_taken};
+use tabletop_training::{EncodedVideo, FeatureStats, TrainingEpisode};
 
 use self::{
     commit::Commit,
@@ -50,12 +51,7 @@ pub use self::{
     commit::PendingCommit, dataset_videos::DatasetVideos, reader::LeRobotReader,
     repair::LeRobotRepair,
 };
-use crate::{
-    episode::{EncodedVideo, TrainingEpisode},
-    error::ExportError,
-    feature_stats::FeatureStats,
-    format::DatasetFormat,
-};
+use crate::{error::ExportError, format::DatasetFormat};
 
 /// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames, so that nothing is lost;
 /// those of cameras with a [video](crate::CameraTrack::video) are videos instead.

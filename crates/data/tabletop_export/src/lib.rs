@@ -1,12 +1,13 @@
 //! Recordings as datasets of other tools.
 //!
-//! An [`TrainingEpisode`] is a recording as a learner reads it: frames at equal intervals, each with a state, an action and pictures, and the task in
-//! sentences. A [`DatasetFormat`] writes episodes, and [`export`] makes them of recordings on all cores, in constant memory.
+//! A [`DatasetFormat`] writes [training episodes](tabletop_training::TrainingEpisode), and [`export`] reads them from recordings on all cores, in
+//! constant memory.
 //!
 //! ```no_run
 //! use std::path::PathBuf;
-//! use tabletop_export::{LeRobot, EpisodeSelection, export};
+//! use tabletop_export::{LeRobot, export};
 //! use tabletop_storage::Storage;
+//! use tabletop_training::EpisodeSelection;
 //!
 //! let dataset = LeRobot::open("dataset".into(), &Storage::default())?;
 //! let recordings = [PathBuf::from("demo")];
@@ -15,37 +16,25 @@
 //! # Ok::<_, tabletop_export::ExportError>(())
 //! ```
 
-mod action;
-mod camera_track;
-mod episode;
 mod episode_files;
 mod error;
-mod feature_stats;
 mod format;
 mod foxglove;
 mod foxglove_messages;
-mod grip_track;
-mod hand_track;
-mod image;
 mod lerobot;
 mod matlab;
 mod protobuf;
-mod reading;
 mod rlds;
 mod robomimic;
 mod robomimic_reader;
-mod selection;
 mod signal_message;
 
-pub use episode::{CameraTrack, EncodedVideo, FrameVectors, ObjectTrack, Subtask, TrainingEpisode};
 pub use episode_files::{EpisodeFile, EpisodeFiles};
 pub use error::ExportError;
 pub use format::{DatasetFormat, ExportSummary, export};
 pub use foxglove::{Mcap, McapFile};
-pub use image::Image;
 pub use lerobot::{DatasetVideos, LeRobot, LeRobotReader, LeRobotRepair, PendingCommit};
 pub use matlab::{Matlab, MatlabFile};
 pub use rlds::{EpisodeRecord, Rlds};
 pub use robomimic::Robomimic;
 pub use robomimic_reader::read_robomimic;
-pub use selection::{ActionKind, EpisodeSelection, PictureSelection, StateKind};

@@ -3,12 +3,9 @@
 use std::fmt::Display;
 
 use hdf5_pure::mat::{MatBuilder, MatError, Options};
+use tabletop_training::{CameraTrack, FrameVectors, Image, TrainingEpisode};
 
-use crate::{
-    episode::{CameraTrack, FrameVectors, TrainingEpisode},
-    episode_files::{EpisodeFile, EpisodeFiles},
-    image::Image,
-};
+use crate::episode_files::{EpisodeFile, EpisodeFiles};
 
 /// A folder with a `.mat` file an episode: numbers and pictures as arrays, names and sentences as texts, a line each.
 pub type Matlab = EpisodeFiles<MatlabFile>;

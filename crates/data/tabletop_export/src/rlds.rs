@@ -19,13 +19,14 @@ use std::{
 
 use serde_json::{Value, json};
 use tabletop_storage::{InnerFile, InnerPath, Storage, WriterLock};
+use tabletop_training::TrainingEpisode;
 
 use self::{
     example::record_of,
     shards::{Shards, shard_path},
     tf_features::features_of,
 };
-use crate::{episode::TrainingEpisode, error::ExportError, format::DatasetFormat};
+use crate::{error::ExportError, format::DatasetFormat};
 
 const INFO: &str = "dataset_info.json";
 const FEATURES: &str = "features.json";

@@ -9,10 +9,9 @@ use std::{
 use hdf5_pure::{AttrValue, Error, File, FileBuilder};
 use serde_json::json;
 use tabletop_storage::{Storage, WriterLock, is_taken};
+use tabletop_training::{ActionKind, TrainingEpisode};
 
-use crate::{
-    episode::TrainingEpisode, error::ExportError, format::DatasetFormat, selection::ActionKind,
-};
+use crate::{error::ExportError, format::DatasetFormat};
 
 /// Every so many demonstrations, one is for validation.
 const VALIDATION: usize = 10;

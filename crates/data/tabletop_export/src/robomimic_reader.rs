@@ -6,13 +6,9 @@ use hdf5_pure::{AttrValue, Error, File};
 use serde_json::Value;
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
 use tabletop_storage::{InnerFile, InnerPath};
+use tabletop_training::{ActionKind, CameraTrack, FrameVectors, Image, TrainingEpisode};
 
-use crate::{
-    episode::{CameraTrack, FrameVectors, TrainingEpisode},
-    error::ExportError,
-    image::Image,
-    selection::ActionKind,
-};
+use crate::error::ExportError;
 
 /// Largest size of a file, in bytes: it is read as a whole.
 const MOST_BYTES: u64 = 1 << 32;

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use crate::{
-    episode::FrameVectors,
-    protobuf::{
-        FieldValue as _,
-        schema::{FieldSchema, MessageSchema, ProtoKind, SchemaSet},
-    },
+use tabletop_training::FrameVectors;
+
+use crate::protobuf::{
+    FieldValue as _,
+    schema::{FieldSchema, MessageSchema, ProtoKind, SchemaSet},
 };
 
 /// A message with a field for each number of a frame, in their order: so a reader plots `/state.left_s0`.

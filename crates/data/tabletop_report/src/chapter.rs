@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
-use tabletop_export::{ActionKind, EpisodeSelection, ExportError, StateKind, TrainingEpisode};
 use tabletop_recorder::{RecordedSegment, RecordingReader};
 use tabletop_task::{Demonstration, Requirements, Task};
+use tabletop_training::{ActionKind, EpisodeError, EpisodeSelection, StateKind, TrainingEpisode};
 
 /// A recording, read for a page.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl Chapter {
     ///
     /// # Errors
     /// A file cannot be read, or the recording has no pictures.
-    pub fn read(folder: &Path) -> Result<Self, ExportError> {
+    pub fn read(folder: &Path) -> Result<Self, EpisodeError> {
         let recording = RecordingReader::open(folder)?;
         let shown = Demonstration::of(&recording)?;
         let mut task = Task::of(&shown);

@@ -1,6 +1,6 @@
 //! Many recordings in a table.
 
-use tabletop_export::Image;
+use tabletop_training::Image;
 
 use crate::{
     chapter::Chapter,

@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
 
 use serde_json::json;
-use tabletop_export::{FrameVectors, Image, ObjectTrack};
 use tabletop_geometry::{Pose, Rgb};
+use tabletop_training::{FrameVectors, Image, ObjectTrack};
 
 use crate::{
     chapter::Chapter,

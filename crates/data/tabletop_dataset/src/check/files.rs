@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use tabletop_core::SimTick;
-use tabletop_export::Image;
 use tabletop_geometry::Pose;
 use tabletop_recorder::{ObjectChange, RecordingReader, StateRow};
+use tabletop_training::Image;
 
 use crate::{check::finding::Findings, error::DatasetError, limits::NEAR_STATE};
 

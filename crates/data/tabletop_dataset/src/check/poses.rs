@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use bevy::math::Vec3;
 use tabletop_core::SimTick;
-use tabletop_export::TrainingEpisode;
 use tabletop_recorder::StateRow;
+use tabletop_training::TrainingEpisode;
 
 use crate::{
     check::finding::Findings,

@@ -9,9 +9,9 @@ use std::{
 
 use bevy::prelude::*;
 use tabletop_core::{RecordingCommand, SimTick, StepApp as _, WriteCommand as _};
-use tabletop_export::{ActionKind, CameraTrack, FrameVectors, Image, TrainingEpisode};
 use tabletop_recorder::RecorderPlugin;
 use tabletop_sim::{TabletopSimPlugins, headless_app_with};
+use tabletop_training::{ActionKind, CameraTrack, FrameVectors, Image, TrainingEpisode};
 
 /// A folder for files that nobody keeps, in memory where there is one.
 fn memory() -> PathBuf {

@@ -2,14 +2,12 @@
 
 use std::sync::Arc;
 
-use arrow::{
-    array::{
-        ArrayRef, BinaryArray, FixedSizeListArray, Float32Array, Float64Array, Int64Array,
-        ListArray, StringArray, StructArray,
-    },
-    buffer::OffsetBuffer,
-    datatypes::{DataType, Field, Fields},
+use arrow_array::{
+    ArrayRef, BinaryArray, FixedSizeListArray, Float32Array, Float64Array, Int64Array, ListArray,
+    StringArray, StructArray,
 };
+use arrow_buffer::OffsetBuffer;
+use arrow_schema::{DataType, Field, Fields};
 
 /// A column with its name.
 pub(super) type Column = (Field, ArrayRef);

@@ -6,9 +6,10 @@ use std::{
     sync::Arc,
 };
 
-use arrow::array::{Float32Array, Int32Array};
+use arrow_array::{Float32Array, Int32Array};
 use parquet::{arrow::ArrowWriter, errors::ParquetError};
 use tabletop_storage::StoredFile;
+use tabletop_training::TrainingEpisode;
 
 use super::{
     columns::{self, Column},
@@ -18,7 +19,7 @@ use super::{
     place::{DataPlace, MOST_FILE_BYTES},
     table::{batch, properties, schema_of},
 };
-use crate::{episode::TrainingEpisode, error::ExportError};
+use crate::error::ExportError;
 
 /// A file that gets episodes.
 #[derive(Debug)]

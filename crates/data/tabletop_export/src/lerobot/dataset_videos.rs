@@ -9,12 +9,13 @@ use std::{
 
 use tabletop_film::Mp4Reader;
 use tabletop_storage::InnerFile;
+use tabletop_training::EncodedVideo;
 
 use super::{
     episode_table::{self, ShownVideos},
     place::{DataPlace, FileSeries},
 };
-use crate::{episode::EncodedVideo, error::ExportError};
+use crate::error::ExportError;
 
 /// The videos of a dataset.
 #[derive(Debug)]

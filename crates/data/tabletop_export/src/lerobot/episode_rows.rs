@@ -2,7 +2,9 @@
 
 use std::{collections::VecDeque, ops::Range, sync::Arc};
 
-use arrow::{array::RecordBatch, compute::concat_batches, datatypes::Schema};
+use arrow_array::RecordBatch;
+use arrow_schema::Schema;
+use arrow_select::concat::concat_batches;
 
 use super::table_file::TableFile;
 use crate::error::ExportError;

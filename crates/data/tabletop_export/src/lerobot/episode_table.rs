@@ -2,13 +2,14 @@
 
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
-use arrow::{
-    array::{Int64Array, RecordBatch},
-    datatypes::{ArrowPrimitiveType, Float64Type, Int64Type},
-    error::ArrowError,
+use arrow_array::{
+    Int64Array, RecordBatch,
+    types::{ArrowPrimitiveType, Float64Type, Int64Type},
 };
+use arrow_schema::ArrowError;
 use parquet::arrow::ArrowWriter;
 use tabletop_storage::InnerFile;
+use tabletop_training::{FeatureStats, QUANTILES};
 
 use super::{
     columns::{self, Column},
@@ -18,10 +19,7 @@ use super::{
     table::{batch, properties},
     table_file::TableFile,
 };
-use crate::{
-    error::ExportError,
-    feature_stats::{FeatureStats, QUANTILES},
-};
+use crate::error::ExportError;
 
 /// An episode in the table.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,12 +5,10 @@ use std::{io::ErrorKind, ops::RangeInclusive, path::Path};
 use serde_json::{Map, Value, json};
 use tabletop_core::TICKS_PER_SECOND;
 use tabletop_storage::{InnerFile, InnerPath};
+use tabletop_training::{CameraTrack, EncodedVideo, FrameVectors, TrainingEpisode};
 
 use super::place::{FILES_PER_CHUNK, MOST_FILE_BYTES};
-use crate::{
-    episode::{CameraTrack, EncodedVideo, FrameVectors, TrainingEpisode},
-    error::ExportError,
-};
+use crate::error::ExportError;
 
 const MOST_BYTES: u64 = 64 * 1024 * 1024;
 

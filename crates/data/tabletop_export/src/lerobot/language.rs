@@ -2,14 +2,12 @@
 
 use std::sync::Arc;
 
-use arrow::{
-    array::{ArrayRef, Float32Array, ListArray, StringArray, StructArray, new_null_array},
-    buffer::OffsetBuffer,
-    datatypes::{DataType, Field, Fields},
-};
+use arrow_array::{ArrayRef, Float32Array, ListArray, StringArray, StructArray, new_null_array};
+use arrow_buffer::OffsetBuffer;
+use arrow_schema::{DataType, Field, Fields};
+use tabletop_training::TrainingEpisode;
 
 use super::columns::Column;
-use crate::episode::TrainingEpisode;
 
 /// `language_persistent`: every frame has all rows of the episode, each with the time from which it holds.
 pub(super) fn persistent(episode: &TrainingEpisode) -> Column {

@@ -1,8 +1,9 @@
 //! Columns of Arrow tables, read back.
 
-use arrow::{
-    array::{Array as _, ArrayRef, AsArray as _, RecordBatch},
-    datatypes::{ArrowPrimitiveType, Int64Type},
+use arrow_array::{
+    Array as _, ArrayRef, RecordBatch,
+    cast::AsArray as _,
+    types::{ArrowPrimitiveType, Int64Type},
 };
 
 /// A column of this name.

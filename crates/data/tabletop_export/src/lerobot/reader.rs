@@ -5,11 +5,15 @@ use std::{
     sync::Arc,
 };
 
-use arrow::{
-    array::{Array as _, ArrayRef, AsArray as _, RecordBatch},
-    datatypes::{Float32Type, Int32Type},
+use arrow_array::{
+    Array as _, ArrayRef, RecordBatch,
+    cast::AsArray as _,
+    types::{Float32Type, Int32Type},
 };
 use tabletop_storage::{InnerFile, InnerPath, Storage, WriterLock, WritingProgram};
+use tabletop_training::{
+    ActionKind, CameraTrack, FrameVectors, Image, Subtask, TrainingEpisode, ticks_of,
+};
 
 use super::{
     commit::{Commit, PendingCommit},
@@ -21,12 +25,7 @@ use super::{
     table_file::TableFile,
     task_table,
 };
-use crate::{
-    episode::{CameraTrack, FrameVectors, Subtask, TrainingEpisode, ticks_of},
-    error::ExportError,
-    image::Image,
-    selection::ActionKind,
-};
+use crate::error::ExportError;
 
 /// The beginning of the name of a camera's feature.
 const CAMERA: &str = "observation.images.";

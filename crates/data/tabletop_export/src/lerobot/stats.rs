@@ -4,14 +4,12 @@ use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use serde_json::{Map, Value, json};
 use tabletop_storage::{InnerFile, InnerPath};
+use tabletop_training::{
+    CameraTrack, FeatureStats, FrameVectors, Image, QUANTILES, TrainingEpisode,
+};
 
 use super::info::{Info, feature_of_camera, signals_of};
-use crate::{
-    episode::{CameraTrack, FrameVectors, TrainingEpisode},
-    error::ExportError,
-    feature_stats::{FeatureStats, QUANTILES},
-    image::Image,
-};
+use crate::error::ExportError;
 
 pub(super) const PATH: &str = "meta/stats.json";
 const MOST_BYTES: u64 = 64 * 1024 * 1024;
@@ -25,49 +23,49 @@ const SAMPLES: (usize, usize, f64) = (100, 10_000, 0.75);
 /// Sides from which on pictures are thinned out, and about the side that remains, in pixels.
 const LARGE: (u32, u32) = (300, 150);
 
-impl FeatureStats {
-    fn to_json(&self) -> Value {
-        let shaped = |values: &[f64]| match self.is_of_pictures {
-            true => values.iter().map(|value| json!([[value]])).collect(),
-            false => json!(values),
-        };
-        let mut all = Map::new();
-        for (name, values) in [
-            ("min", &self.min),
-            ("max", &self.max),
-            ("mean", &self.mean),
-            ("std", &self.std),
-        ] {
-            all.insert(name.into(), shaped(values));
-        }
-        all.insert("count".into(), json!([self.count]));
-        for (values, (name, _)) in self.quantiles.iter().zip(QUANTILES) {
-            all.insert(name.into(), shaped(values));
-        }
-        Value::Object(all)
+/// Statistics, as LeRobot writes them.
+fn to_json(stats: &FeatureStats) -> Value {
+    let shaped = |values: &[f64]| match stats.is_of_pictures {
+        true => values.iter().map(|value| json!([[value]])).collect(),
+        false => json!(values),
+    };
+    let mut all = Map::new();
+    for (name, values) in [
+        ("min", &stats.min),
+        ("max", &stats.max),
+        ("mean", &stats.mean),
+        ("std", &stats.std),
+    ] {
+        all.insert(name.into(), shaped(values));
     }
+    all.insert("count".into(), json!([stats.count]));
+    for (values, (name, _)) in stats.quantiles.iter().zip(QUANTILES) {
+        all.insert(name.into(), shaped(values));
+    }
+    Value::Object(all)
+}
 
-    fn from_json(value: &Value) -> Option<Self> {
-        let numbers = |name: &str| -> Option<Vec<f64>> {
-            let values = value.get(name)?.as_array()?;
-            let number = |value: &Value| match value.as_array() {
-                Some(inner) => inner.first()?.as_array()?.first()?.as_f64(),
-                None => value.as_f64(),
-            };
-            values.iter().map(number).collect()
+/// Statistics, as LeRobot writes them; `None` if one is missing.
+fn from_json(value: &Value) -> Option<FeatureStats> {
+    let numbers = |name: &str| -> Option<Vec<f64>> {
+        let values = value.get(name)?.as_array()?;
+        let number = |value: &Value| match value.as_array() {
+            Some(inner) => inner.first()?.as_array()?.first()?.as_f64(),
+            None => value.as_f64(),
         };
-        let [q01, q10, q50, q90, q99] = QUANTILES.map(|(name, _)| numbers(name));
-        let min = value.get("min")?.as_array()?;
-        Some(Self {
-            is_of_pictures: min.first().is_some_and(Value::is_array),
-            min: numbers("min")?,
-            max: numbers("max")?,
-            mean: numbers("mean")?,
-            std: numbers("std")?,
-            count: value.get("count")?.as_array()?.first()?.as_u64()?,
-            quantiles: [q01?, q10?, q50?, q90?, q99?],
-        })
-    }
+        values.iter().map(number).collect()
+    };
+    let [q01, q10, q50, q90, q99] = QUANTILES.map(|(name, _)| numbers(name));
+    let min = value.get("min")?.as_array()?;
+    Some(FeatureStats {
+        is_of_pictures: min.first().is_some_and(Value::is_array),
+        min: numbers("min")?,
+        max: numbers("max")?,
+        mean: numbers("mean")?,
+        std: numbers("std")?,
+        count: value.get("count")?.as_array()?.first()?.as_u64()?,
+        quantiles: [q01?, q10?, q50?, q90?, q99?],
+    })
 }
 
 /// The statistics of an episode's states, actions and pictures.
@@ -172,7 +170,7 @@ fn colors_of(image: &Image) -> [[u64; 256]; 3] {
 pub(super) fn write(stats: &BTreeMap<String, FeatureStats>) -> Vec<u8> {
     let all: Map<_, _> = stats
         .iter()
-        .map(|(feature, stats)| (feature.clone(), stats.to_json()))
+        .map(|(feature, stats)| (feature.clone(), to_json(stats)))
         .collect();
     serde_json::to_vec_pretty(&all).unwrap_or_default()
 }
@@ -189,7 +187,7 @@ pub(super) fn read(
         serde_json::from_slice(&bytes).map_err(|error| ExportError::dataset(&path, error))?;
     all.into_iter()
         .map(|(feature, value)| {
-            let stats = FeatureStats::from_json(&value);
+            let stats = from_json(&value);
             let stats = stats.ok_or_else(|| {
                 ExportError::dataset(&path, format!("the statistics of {feature} are incomplete"))
             })?;

@@ -2,11 +2,8 @@
 
 use std::sync::Arc;
 
-use arrow::{
-    array::RecordBatch,
-    datatypes::{Field, Schema},
-    error::ArrowError,
-};
+use arrow_array::RecordBatch;
+use arrow_schema::{ArrowError, Field, Schema};
 use parquet::{
     basic::Compression,
     file::properties::{WriterProperties, WriterPropertiesBuilder},

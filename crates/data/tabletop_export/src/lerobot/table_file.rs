@@ -7,7 +7,7 @@ use std::{
     path::PathBuf,
 };
 
-use arrow::array::{RecordBatch, RecordBatchReader as _};
+use arrow_array::{RecordBatch, RecordBatchReader as _};
 use parquet::{
     arrow::{
         ProjectionMask,
@@ -167,7 +167,7 @@ impl TableFile {
         if rows != expected {
             return Err(fault(&format!("it has {rows} rows, and says {expected}")));
         }
-        arrow::compute::concat_batches(&schema, &parts).map_err(|error| fault(&error))
+        arrow_select::concat::concat_batches(&schema, &parts).map_err(|error| fault(&error))
     }
 
     /// The whole numbers in a column, group by group.

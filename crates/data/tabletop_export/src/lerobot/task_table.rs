@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, path::Path, sync::Arc};
 
-use arrow::{array::AsArray as _, datatypes::Int64Type};
+use arrow_array::{cast::AsArray as _, types::Int64Type};
 use parquet::{arrow::ArrowWriter, file::metadata::KeyValue};
 use serde_json::json;
 use tabletop_storage::{InnerFile, InnerPath};

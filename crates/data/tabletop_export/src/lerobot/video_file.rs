@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use tabletop_film::{Mp4Writer, VideoCoding};
 use tabletop_storage::StoredFile;
+use tabletop_training::EncodedVideo;
 
 use super::{
     episode_table::VideoPart,
     place::{DataPlace, MOST_VIDEO_BYTES},
 };
-use crate::{episode::EncodedVideo, error::ExportError};
+use crate::error::ExportError;
 
 /// A video that gets episodes.
 #[derive(Debug)]

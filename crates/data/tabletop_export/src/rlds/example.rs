@@ -1,10 +1,8 @@
 //! Episodes as `tf.train.Example` messages (Protocol Buffers) in TFRecord frames.
 
-use crate::{
-    episode::TrainingEpisode,
-    image::gray_png,
-    protobuf::wire::{field, varint},
-};
+use tabletop_training::{TrainingEpisode, gray_png};
+
+use crate::protobuf::wire::{field, varint};
 
 /// An episode as a record: its length, a checksum of that, the message, and a checksum of it.
 pub(super) fn record_of(episode: &TrainingEpisode) -> Vec<u8> {

@@ -1,8 +1,7 @@
 //! `features.json`: the features of an episode and its steps.
 
 use serde_json::{Map, Value, json};
-
-use crate::episode::{FrameVectors, TrainingEpisode};
+use tabletop_training::{FrameVectors, TrainingEpisode};
 
 const MODULE: &str = "tensorflow_datasets.core.features";
 

@@ -13,7 +13,10 @@ use tabletop_export::{
 };
 use tabletop_storage::{Patience, Storage};
 
-use crate::demonstration::{alone, episode, fresh};
+use crate::{
+    alone,
+    demonstration::{episode, fresh},
+};
 
 /// Adds so many episodes slowly, and waits for others.
 fn add<F: DatasetFormat>(

@@ -3,7 +3,10 @@
 use hdf5_pure::{AttrValue, File};
 use tabletop_export::{DatasetFormat as _, Matlab, Robomimic};
 
-use crate::demonstration::{alone, episode, fresh};
+use crate::{
+    alone,
+    demonstration::{episode, fresh},
+};
 
 #[test]
 fn demonstrations_are_groups_with_actions_within_one() {

@@ -2,18 +2,21 @@
 
 use std::{fs, path::Path};
 
-use arrow::{
-    array::{Array, AsArray as _, RecordBatch},
-    datatypes::{Float32Type, Int64Type},
+use arrow_array::{
+    Array, RecordBatch,
+    cast::AsArray as _,
+    types::{Float32Type, Int64Type},
 };
 use parquet::arrow::{ArrowWriter, arrow_reader::ParquetRecordBatchReaderBuilder};
 use serde_json::Value;
-use tabletop_export::{
-    DatasetFormat as _, EpisodeSelection, ExportError, LeRobot, LeRobotReader, export,
-};
+use tabletop_export::{DatasetFormat as _, ExportError, LeRobot, LeRobotReader, export};
 use tabletop_storage::{Storage, StorageFault};
+use tabletop_training::EpisodeSelection;
 
-use crate::demonstration::{alone, episode, fresh, recording};
+use crate::{
+    alone,
+    demonstration::{episode, fresh, recording},
+};
 
 fn add(folder: &Path, storage: Storage, episodes: usize) -> Result<(), ExportError> {
     let mut dataset = LeRobot::open(folder.to_owned(), &storage)?;

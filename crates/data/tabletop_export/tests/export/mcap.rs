@@ -8,7 +8,10 @@ use std::{
 use mcap::MessageStream;
 use tabletop_export::{DatasetFormat as _, Mcap};
 
-use crate::demonstration::{alone, episode, fresh};
+use crate::{
+    alone,
+    demonstration::{episode, fresh},
+};
 
 /// The fields of a Protocol Buffers message: the bytes of each, by its number.
 #[derive(Clone, Debug, Default)]

@@ -2,14 +2,17 @@
 
 use std::{fs, path::Path, sync::Arc};
 
-use arrow::array::{Array, Int64Array, RecordBatch, StringArray};
+use arrow_array::{Array, Int64Array, RecordBatch, StringArray};
 use parquet::arrow::ArrowWriter;
 use tabletop_export::{
-    DatasetFormat as _, EpisodeSelection, ExportError, LeRobot, LeRobotReader, PictureSelection,
-    Robomimic, StateKind, TrainingEpisode, read_robomimic,
+    DatasetFormat as _, ExportError, LeRobot, LeRobotReader, Robomimic, read_robomimic,
 };
+use tabletop_training::{EpisodeSelection, PictureSelection, StateKind, TrainingEpisode};
 
-use crate::demonstration::{alone, episode, fresh, recording};
+use crate::{
+    alone,
+    demonstration::{episode, fresh, recording},
+};
 
 fn is_same_in_numbers(read: &TrainingEpisode, written: &TrainingEpisode) {
     assert_eq!(read.fps, written.fps);
@@ -138,7 +141,7 @@ fn videos_are_copied_to_the_byte_with_the_statistics_of_their_pictures() {
         let (read, written) = (&read.cameras[0], &written.cameras[0]);
         assert!(read.images.is_empty());
         assert_eq!(read.size(), written.size());
-        let packets = |camera: &tabletop_export::CameraTrack| {
+        let packets = |camera: &tabletop_training::CameraTrack| {
             let video = camera.video.as_ref().unwrap();
             assert!(video.packets[0].is_key);
             (video.track, video.packets.clone())

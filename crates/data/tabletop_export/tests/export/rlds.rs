@@ -5,7 +5,10 @@ use std::fs;
 use serde_json::Value;
 use tabletop_export::{DatasetFormat as _, Rlds};
 
-use crate::demonstration::{alone, episode, fresh};
+use crate::{
+    alone,
+    demonstration::{episode, fresh},
+};
 
 fn json(path: &std::path::Path) -> Value {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap()

@@ -5,8 +5,10 @@ use std::f32::consts::FRAC_PI_3;
 use bevy::math::Vec3;
 use tabletop_camera::{CameraPlace, CameraSpec};
 use tabletop_core::TICKS_PER_SECOND;
-use tabletop_export::{ActionKind, EpisodeSelection, PictureSelection, StateKind, TrainingEpisode};
 use tabletop_geometry::Pose;
+use tabletop_training::{
+    ActionKind, EpisodeSelection, PictureSelection, StateKind, TrainingEpisode,
+};
 
 use crate::demonstration::{episode, recording};
 

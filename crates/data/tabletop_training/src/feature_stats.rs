@@ -1,7 +1,7 @@
 //! Statistics of a feature of a dataset.
 
 /// The quantiles, by their names.
-pub(crate) const QUANTILES: [(&str, f64); 5] = [
+pub const QUANTILES: [(&str, f64); 5] = [
     ("q01", 0.01),
     ("q10", 0.10),
     ("q50", 0.50),
@@ -11,10 +11,14 @@ pub(crate) const QUANTILES: [(&str, f64); 5] = [
 
 /// Statistics of a feature, by its components.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct FeatureStats {
+pub struct FeatureStats {
+    /// The least number of each component.
     pub min: Vec<f64>,
+    /// The greatest.
     pub max: Vec<f64>,
+    /// The mean.
     pub mean: Vec<f64>,
+    /// The standard deviation.
     pub std: Vec<f64>,
     /// Number of samples: of frames, or of pictures looked at.
     pub count: u64,

@@ -2,11 +2,11 @@
 
 use bevy::prelude::*;
 use tabletop_core::prelude::*;
-use tabletop_export::{EpisodeSelection, LeRobot, TrainingEpisode, export};
 use tabletop_recorder::RecorderPlugin;
 use tabletop_sim::{TabletopSimPlugins, headless_app_with};
+use tabletop_training::{EpisodeSelection, TrainingEpisode};
 
-use crate::demonstration::{alone, fresh};
+use crate::demonstration::fresh;
 
 /// A recording in which the right hand puts both red blocks onto a plate, and leaves the green one.
 fn recorded(name: &str) -> std::path::PathBuf {
@@ -86,20 +86,4 @@ fn what_is_no_more_than_a_step_has_no_program() {
         episode.paraphrases,
         crate::demonstration::episode().paraphrases
     );
-}
-
-#[test]
-fn language_columns_have_the_program() {
-    let folder = recorded("program_columns_demo");
-    let out = fresh("program_columns");
-    let dataset = LeRobot::open(out.clone(), &alone())
-        .unwrap()
-        .with_language();
-    assert!(dataset.has_language());
-    let selection = EpisodeSelection {
-        has_program: true,
-        ..EpisodeSelection::default()
-    };
-    export(&[folder], &selection, dataset, 1, |_| {}).unwrap();
-    assert!(LeRobot::open(out, &alone()).unwrap().has_language());
 }

@@ -81,7 +81,7 @@ pub struct EncodedVideo {
     /// Its frames.
     pub packets: Vec<VideoPacket>,
     /// The statistics of its colours, if they are known only from before it was encoded.
-    pub(crate) colors: Option<FeatureStats>,
+    pub colors: Option<FeatureStats>,
 }
 
 /// A part of a task.
@@ -94,7 +94,7 @@ pub struct Subtask {
 }
 
 /// The ticks whose ends so many frames show, at so many a second.
-pub(crate) fn ticks_of(frames: usize, fps: u32) -> impl Iterator<Item = SimTick> {
+pub fn ticks_of(frames: usize, fps: u32) -> impl Iterator<Item = SimTick> {
     let (second, fps) = (u64::from(TICKS_PER_SECOND), u64::from(fps.max(1)));
     (0..frames as u64).map(move |frame| SimTick(frame * second / fps))
 }

@@ -12,7 +12,7 @@ use crate::{
     action::{end_effector_motions, hand_motions},
     camera_track::{filmed_cameras, recorded_cameras},
     episode::{EncodedVideo, FrameVectors, ObjectTrack, Subtask, TrainingEpisode},
-    error::ExportError,
+    error::EpisodeError,
     grip_track::GripTrack,
     hand_track::{HANDS, HandTrack},
     selection::{ActionKind, EpisodeSelection, StateKind},
@@ -23,7 +23,7 @@ impl TrainingEpisode {
     ///
     /// # Errors
     /// A file cannot be read, or the recording has no pictures.
-    pub fn read(folder: &Path, selection: &EpisodeSelection) -> Result<Self, ExportError> {
+    pub fn read(folder: &Path, selection: &EpisodeSelection) -> Result<Self, EpisodeError> {
         let recording = RecordingReader::open(folder)?;
         let shown = Demonstration::of(&recording)?;
         let mut task = Task::of(&shown);
@@ -62,7 +62,7 @@ impl TrainingEpisode {
         let action_kind = action;
         let mut replay = None;
         let grips = GripTrack::of(&shown);
-        let mut orders = || -> Result<FrameVectors, ExportError> {
+        let mut orders = || -> Result<FrameVectors, EpisodeError> {
             if !grips.grips() {
                 return Ok(joints.clone());
             }
@@ -131,7 +131,7 @@ fn replay_of<'r>(
     replay: &'r mut Option<Replay>,
     folder: &Path,
     selection: &EpisodeSelection,
-) -> Result<&'r Replay, ExportError> {
+) -> Result<&'r Replay, EpisodeError> {
     match replay {
         Some(replay) => Ok(replay),
         None => Ok(replay.insert(Replay::read_allowing(folder, &selection.allowed)?)),

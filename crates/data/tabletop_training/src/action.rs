@@ -9,7 +9,7 @@ use tabletop_task::Demonstration;
 
 use crate::{
     episode::FrameVectors,
-    error::ExportError,
+    error::EpisodeError,
     hand_track::{HANDS, HandTrack},
 };
 
@@ -49,8 +49,8 @@ pub(crate) fn end_effector_motions(
     replay: &Replay,
     joints: &FrameVectors,
     orders: &FrameVectors,
-) -> Result<FrameVectors, ExportError> {
-    let unfit = |problem: String| ExportError::Unfit {
+) -> Result<FrameVectors, EpisodeError> {
+    let unfit = |problem: String| EpisodeError::Unfit {
         recording: replay.folder().to_owned(),
         problem,
     };

@@ -4,7 +4,7 @@ use tabletop_core::Picture;
 use tabletop_film::Canvas;
 use tabletop_storage::InnerFile;
 
-use crate::error::ExportError;
+use crate::error::EpisodeError;
 
 /// A picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -25,18 +25,18 @@ impl Image {
     ///
     /// # Errors
     /// The file cannot be read, is behind a link, or is no picture of a camera.
-    pub fn read(file: &InnerFile) -> Result<Self, ExportError> {
+    pub fn read(file: &InnerFile) -> Result<Self, EpisodeError> {
         let path = file.path();
         let bytes = file.read(Picture::MOST_FILE_BYTES);
-        let bytes = bytes.map_err(ExportError::io(&path))?;
-        Self::decode(&bytes).map_err(|problem| ExportError::dataset(path, problem))
+        let bytes = bytes.map_err(EpisodeError::io(&path))?;
+        Self::decode(&bytes).map_err(|problem| EpisodeError::picture(path, problem))
     }
 
     /// Reads a picture of a camera whose pictures have so many columns and rows, if that is known.
     ///
     /// # Errors
     /// As [`read`](Self::read), and if it has another size.
-    pub fn read_sized(file: &InnerFile, size: Option<[u32; 2]>) -> Result<Self, ExportError> {
+    pub fn read_sized(file: &InnerFile, size: Option<[u32; 2]>) -> Result<Self, EpisodeError> {
         let image = Self::read(file)?;
         let found = [image.width, image.height];
         match size.filter(|expected| *expected != found) {
@@ -46,7 +46,7 @@ impl Image {
                 let problem = format!(
                     "it has {columns}x{rows} pixels, the camera's pictures have {width}x{height}"
                 );
-                Err(ExportError::dataset(file.path(), problem))
+                Err(EpisodeError::picture(file.path(), problem))
             }
         }
     }
@@ -77,7 +77,7 @@ impl Image {
 }
 
 /// Values of pixels in 16 bits as a PNG file.
-pub(crate) fn gray_png(width: u32, height: u32, values: &[u16]) -> Vec<u8> {
+pub fn gray_png(width: u32, height: u32, values: &[u16]) -> Vec<u8> {
     let bytes: Vec<u8> = values.iter().copied().flat_map(u16::to_be_bytes).collect();
     let mut png = Vec::new();
     let mut encoder = png::Encoder::new(&mut png, width, height);

@@ -13,7 +13,7 @@ use tabletop_task::Demonstration;
 
 use crate::{
     episode::{CameraTrack, EncodedVideo},
-    error::ExportError,
+    error::EpisodeError,
     image::Image,
     selection::PictureSelection,
 };
@@ -28,7 +28,7 @@ const ANYTHING_ELSE: u16 = u16::MAX;
 pub(crate) fn recorded_cameras(
     recording: &RecordingReader,
     frames: usize,
-) -> Result<Vec<CameraTrack>, ExportError> {
+) -> Result<Vec<CameraTrack>, EpisodeError> {
     let segments = recording.segments()?;
     let recorded = segments.iter().flat_map(|segment| &segment.frames);
     let recorded: BTreeMap<_, _> = recorded.map(|frame| (frame.number, frame)).collect();
@@ -51,7 +51,7 @@ pub(crate) fn recorded_cameras(
                 let size = recording.picture_size(name).or(first);
                 latest = Some(Arc::new(Image::read_sized(file, size)?));
             }
-            let image = latest.clone().ok_or_else(|| ExportError::Unfit {
+            let image = latest.clone().ok_or_else(|| EpisodeError::Unfit {
                 recording: recording.folder().to_owned(),
                 problem: format!("its first frame has no picture of the {name} camera"),
             })?;
@@ -68,7 +68,7 @@ pub(crate) fn filmed_cameras(
     shown: &Demonstration,
     selection: &PictureSelection,
     ticks: &[SimTick],
-) -> Result<Vec<CameraTrack>, ExportError> {
+) -> Result<Vec<CameraTrack>, EpisodeError> {
     let cameras = match &selection.cameras {
         Some(cameras) => cameras.clone(),
         None => recorded_as(replay),
@@ -84,7 +84,7 @@ pub(crate) fn filmed_cameras(
         for (track, shot) in tracks.iter_mut().zip(shots) {
             track.add(shot, shown, tick, selection, replay)?;
         }
-        Ok::<_, ExportError>(())
+        Ok::<_, EpisodeError>(())
     };
     Footage::new(replay, cameras).shoot(ticks.iter().copied(), shoot)?;
     Ok(tracks)
@@ -125,9 +125,9 @@ impl CameraTrack {
         tick: SimTick,
         selection: &PictureSelection,
         replay: &Replay,
-    ) -> Result<(), ExportError> {
+    ) -> Result<(), EpisodeError> {
         let Shot { picture, things } = shot;
-        let unfit = |problem: String| ExportError::Unfit {
+        let unfit = |problem: String| EpisodeError::Unfit {
             recording: replay.folder().to_owned(),
             problem,
         };
