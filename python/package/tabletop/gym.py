@@ -229,7 +229,7 @@ class TabletopEnv(gymnasium.Env):
         try:
             import pygame
         except ImportError:
-            raise _tabletop.Error("render mode human needs pygame: pip install tabletop[human]") from None
+            raise _tabletop.Error("render mode human needs pygame: pip install pygame") from None
         picture = self._env.picture()[0]
         rows, columns, _ = picture.shape
         zoom = max(1, 640 // columns)

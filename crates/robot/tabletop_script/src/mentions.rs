@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use tabletop_storage::{Symlinks, read_regular_file};
 
 /// The Python driver, which knows all words, and lies beside scripts that import it.
-const DRIVER: &str = "tabletop.py";
+const DRIVER: &str = "tabletop_driver.py";
 /// Larger files are data.
 const LARGEST_SCRIPT: u64 = 1 << 20;
 /// Folders in folders are looked into this far down.
@@ -95,7 +95,7 @@ mod tests {
         write("lib/helper.py", "sensor.contacts");
         write("lib/private/a/b/deep.m", "sensor.held");
         write("robot.py", "print(sensor.held)");
-        write("tabletop.py", "demoCue");
+        write("tabletop_driver.py", "demoCue");
         write(
             "lib/notes.py",
             "x = 1  # jointTorques\nprint('#', rgbVision)",

@@ -64,7 +64,7 @@ macro_rules! script {
 /// The scripts in the folder of the Python package.
 const SCRIPTS: [ShippedFile; 3] = [
     script!("example.py"),
-    script!("tabletop.py"),
+    script!("tabletop_driver.py"),
     script!("wave.py"),
 ];
 

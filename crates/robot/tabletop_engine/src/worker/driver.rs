@@ -54,8 +54,8 @@ const MATLAB: &[(&str, &str)] = files![
 
 /// The driver for Python.
 const PYTHON: &[(&str, &str)] = &[(
-    "tabletop.py",
-    include_str!("../../../../../python/tabletop.py"),
+    "tabletop_driver.py",
+    include_str!("../../../../../python/tabletop_driver.py"),
 )];
 
 /// The files of the driver for an engine: names and texts.

@@ -44,7 +44,7 @@ pub(crate) fn command(config: &EngineConfig, session: &ExchangeFolder) -> Result
         (EngineKind::Python, Trigger::Stdin) => {
             command.args([
                 "-u".as_ref(),
-                session.driver().join("tabletop.py").as_os_str(),
+                session.driver().join("tabletop_driver.py").as_os_str(),
             ]);
             command.arg(session.folder());
         }
