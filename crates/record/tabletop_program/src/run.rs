@@ -54,6 +54,17 @@ pub struct Impossible {
     pub reason: String,
 }
 
+impl Impossible {
+    /// A sentence that cannot be done, whatever its object.
+    pub const fn sentence(sentence: String, reason: String) -> Self {
+        Self {
+            sentence,
+            object: None,
+            reason,
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 enum PendingWork {
     Sentence(Sentence, usize),

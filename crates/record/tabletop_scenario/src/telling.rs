@@ -2,7 +2,8 @@
 
 use tabletop_core::{Hand, HandCommand};
 use tabletop_program::{
-    HandProgress, HandStep, HandledObject, NextAttempt, ProgramAttempts, StepAttempt, TaskProgram,
+    HandProgress, HandStep, HandledObject, Impossible, NextAttempt, ProgramAttempts, StepAttempt,
+    TaskProgram,
 };
 
 use crate::seen::Seen;
@@ -43,8 +44,8 @@ impl HandTelling {
                         NextAttempt::Done => return Ok(None),
                         NextAttempt::Impossible(reason) => return Err(reason.to_string()),
                         NextAttempt::Misplaced(StepAttempt { step, sentence, .. }) => {
-                            let (said, object) = (sentence.trim_end_matches('.'), step.object);
-                            return Err(format!("{said}: {object} is not where it was put"));
+                            let reason = format!("{} is not where it was put", step.object);
+                            return Err(Impossible::sentence(sentence, reason).to_string());
                         }
                     };
                     let step = HandStep::begin(&scene, &attempt.step, self.hand);

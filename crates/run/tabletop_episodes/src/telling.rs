@@ -129,7 +129,7 @@ impl fmt::Display for TellFailure {
         match self {
             Self::Impossible(reason) => write!(f, "{reason}"),
             Self::Step(sentence, failure) => {
-                write!(f, "{}: {failure}", sentence.trim_end_matches('.'))
+                Impossible::sentence(sentence.clone(), failure.to_string()).fmt(f)
             }
         }
     }

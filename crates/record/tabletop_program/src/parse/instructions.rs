@@ -8,35 +8,17 @@ use crate::{
 };
 
 /// The verbs of the grammar, which no procedure can have.
-pub(crate) const VERBS: [&str; 27] = [
-    "put",
-    "place",
-    "move",
-    "lay",
-    "set",
-    "drop",
-    "bring",
-    "stack",
-    "pile",
-    "line",
-    "remove",
-    "delete",
-    "clear",
-    "take",
-    "open",
-    "close",
-    "shut",
-    "swap",
-    "exchange",
-    "switch",
-    "copy",
-    "if",
-    "while",
-    "then",
-    "until",
-    "otherwise",
-    "to",
+const VERBS: [&str; 25] = [
+    "put", "place", "move", "lay", "set", "drop", "bring", "stack", "pile", "line", "remove",
+    "delete", "clear", "take", "pick", "grasp", "grab", "lift", "open", "close", "shut", "swap",
+    "exchange", "switch", "copy",
 ];
+
+/// Other words that begin or join sentences, which no procedure can have for a verb.
+const KEYWORDS: [&str; 6] = ["if", "while", "then", "until", "otherwise", "to"];
+
+/// The verbs of an object that is put somewhere.
+const PUT: [&str; 7] = ["put", "place", "move", "lay", "set", "drop", "bring"];
 
 /// Reads instructions one after the other.
 pub(crate) fn chain(cursor: &mut Cursor, it: Option<&Noun>) -> Option<Vec<Instruction>> {
@@ -64,7 +46,7 @@ pub(crate) fn chain(cursor: &mut Cursor, it: Option<&Noun>) -> Option<Vec<Instru
 /// True if an instruction begins here.
 fn is_verb(cursor: &Cursor) -> bool {
     let word = cursor.peek();
-    VERBS[..21].contains(&word) || cursor.verbs.iter().any(|verb| verb == word)
+    VERBS.contains(&word) || cursor.verbs.iter().any(|verb| verb == word)
 }
 
 /// Reads an instruction.
@@ -80,11 +62,15 @@ fn instruction(cursor: &mut Cursor) -> Option<Instruction> {
         let _ = cursor.word("up");
         return arranged(cursor, Pattern::Tower);
     }
+    if cursor.one_of(&PUT).is_some() {
+        return put(cursor);
+    }
     if cursor
-        .one_of(&["put", "place", "move", "lay", "set", "drop", "bring"])
+        .phrases(&["pick up", "pick", "grasp", "grab", "lift up", "lift"])
         .is_some()
     {
-        return put(cursor);
+        let what = nouns::noun(cursor)?;
+        return picked(cursor, what);
     }
     if cursor
         .phrases(&["take away", "clear away", "remove", "delete"])
@@ -129,16 +115,23 @@ fn moved_tower(cursor: &mut Cursor) -> Option<Instruction> {
 
 fn arranged(cursor: &mut Cursor, pattern: Pattern) -> Option<Instruction> {
     let what = nouns::noun(cursor)?;
-    let at = nouns::spot(cursor);
-    let to = TargetPlace::Arranged { pattern, at };
+    let to = pattern_of(&what, pattern, cursor)?;
     let first = order(cursor);
     Some(Instruction::Put { what, to, first })
+}
+
+/// Reads where a pattern is. A single object makes one only with those that are there.
+fn pattern_of(what: &Noun, pattern: Pattern, cursor: &mut Cursor) -> Option<TargetPlace> {
+    let at = nouns::spot(cursor);
+    (at.is_some() || !what.is_definite()).then_some(TargetPlace::Arranged { pattern, at })
 }
 
 /// What is taken off something is put on the table.
 fn taken(cursor: &mut Cursor) -> Option<Instruction> {
     let mut what = nouns::noun(cursor)?;
-    cursor.phrases(&["off", "out of"])?;
+    if cursor.phrases(&["off", "out of"]).is_none() {
+        return picked(cursor, what);
+    }
     let restriction = Restriction::From {
         whole: Box::new(nouns::noun(cursor)?),
     };
@@ -149,14 +142,28 @@ fn taken(cursor: &mut Cursor) -> Option<Instruction> {
 }
 
 fn put(cursor: &mut Cursor) -> Option<Instruction> {
-    let mut what = nouns::noun(cursor)?;
-    let mut to = place(cursor)?;
+    let what = nouns::noun(cursor)?;
+    placed(cursor, what)
+}
+
+/// What is picked up has to be put somewhere.
+fn picked(cursor: &mut Cursor, what: Noun) -> Option<Instruction> {
+    let _ = cursor.word(",");
+    cursor.phrases(&["and then", "and", "then"])?;
+    cursor.one_of(&PUT)?;
+    cursor.one_of(&["it", "them"])?;
+    placed(cursor, what)
+}
+
+/// Reads where objects are put.
+fn placed(cursor: &mut Cursor, mut what: Noun) -> Option<Instruction> {
+    let mut to = place(cursor, &what)?;
     // Of two places, the first is where the objects are.
     let second = cursor.attempt(|cursor| {
         let TargetPlace::Spot(spot) = &to else {
             return None;
         };
-        let place = place(cursor)?;
+        let place = place(cursor, &what)?;
         let spot = spot.clone();
         restrict(&mut what, Restriction::Where { not: false, spot })?;
         Some(place)
@@ -189,14 +196,14 @@ fn placed_noun(cursor: &mut Cursor) -> Option<Noun> {
     Some(what)
 }
 
-fn place(cursor: &mut Cursor) -> Option<TargetPlace> {
+/// Reads the place of objects.
+fn place(cursor: &mut Cursor, what: &Noun) -> Option<TargetPlace> {
     if cursor.word("aside").is_some() {
         return Some(TargetPlace::Aside);
     }
     let pattern = cursor.attempt(pattern);
     if let Some(pattern) = pattern {
-        let at = nouns::spot(cursor);
-        return Some(TargetPlace::Arranged { pattern, at });
+        return pattern_of(what, pattern, cursor);
     }
     let place_of = cursor.attempt(|cursor| {
         cursor.word("where")?;
@@ -299,7 +306,7 @@ fn copied(cursor: &mut Cursor) -> Option<Instruction> {
 fn called(cursor: &mut Cursor) -> Option<Instruction> {
     let verbs = cursor.verbs.clone();
     let known: Vec<_> = verbs.iter().map(String::as_str).collect();
-    let usual = VERBS[..21].iter().copied().filter(|verb| *verb != "line");
+    let usual = VERBS.iter().copied().filter(|verb| *verb != "line");
     let words: Vec<_> = usual.chain(known).collect();
     let is_known = |word: &str| verbs.iter().find(|verb| *verb == word).cloned();
     let verb = cursor.known("a verb such as put", &words, is_known)?;
@@ -333,7 +340,7 @@ pub(crate) fn defined_verbs(tokens: &[Token]) -> Vec<String> {
 /// Whether a procedure can have this verb.
 pub(crate) fn is_new_verb(verb: &str) -> bool {
     let is_word = !verb.is_empty() && verb.chars().all(|letter| letter.is_ascii_lowercase());
-    is_word && !VERBS.contains(&verb)
+    is_word && !VERBS.contains(&verb) && !KEYWORDS.contains(&verb)
 }
 
 impl Instruction {

@@ -152,10 +152,23 @@ fn place() -> impl Strategy<Value = TargetPlace> {
     ]
 }
 
+fn is_one(noun: &Noun) -> bool {
+    match noun {
+        Noun::Named { .. } => true,
+        Noun::Described { quantity, .. } => {
+            matches!(quantity, HowMany::The | HowMany::Most { count: 1, .. })
+        }
+    }
+}
+
 fn instruction() -> BoxedStrategy<Instruction> {
     let first = || option::of(select(SUPERLATIVES.to_vec()));
     prop_oneof![
-        4 => (noun(), place(), first()).prop_map(|(what, to, first)| Instruction::Put { what, to, first }),
+        4 => (noun(), place(), first())
+            .prop_filter("one object is no pattern", |(what, to, _)| {
+                !is_one(what) || !matches!(to, TargetPlace::Arranged { at: None, .. })
+            })
+            .prop_map(|(what, to, first)| Instruction::Put { what, to, first }),
         1 => (noun(), first()).prop_map(|(what, first)| Instruction::Remove { what, first }),
         1 => noun().prop_map(|what| Instruction::Open { what }),
         1 => noun().prop_map(|what| Instruction::Close { what }),

@@ -52,6 +52,14 @@ const LOOSE: &[(&str, &str)] = &[
         "Put every red block into the blue box.",
     ),
     (
+        "Pick up the red cube and place it in the blue box",
+        "Put the red block into the blue box.",
+    ),
+    (
+        "Grasp any red block, then put it on the plate, and take the green block and put it aside",
+        "Put any red block on the plate, then put the green block aside.",
+    ),
+    (
         "Stack all the blocks, biggest first!",
         "Put all blocks on each other, the largest first.",
     ),
@@ -149,6 +157,7 @@ fn faults_have_a_place_and_the_nearest_sentence() {
             1,
             "Put the red block on the plate.",
         ),
+        ("Stack the red block.", 1, 20, ""),
         ("Put the red block on", 1, 21, ""),
         ("Put all blocks on each other, the bigest first.", 1, 35, ""),
     ] {
