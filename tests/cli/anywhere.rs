@@ -135,6 +135,12 @@ fn names_without_folder_and_ending_lead_to_shipped_files() {
         ),
         (["robot", "check", "panda"], "assets/panda/robot.ron"),
         (["run", "--setup", "block"], "tablesetup/blocks.xml"),
+        (["run", "default", "--quiet"], "tablesetup/default.xml"),
+        (["check", "towr.xml", "--dump"], "tablesetup/tower.xml"),
+        (
+            ["--setup", "hanoi", "--no-settings"],
+            "tablesetup/hanoi.xml",
+        ),
     ] {
         let refused = tabletop(&args);
         assert_eq!(refused.status.code(), Some(2), "{args:?}");

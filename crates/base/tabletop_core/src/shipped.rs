@@ -61,11 +61,21 @@ impl ShippedFiles {
         self.0.iter().find(|file| Path::new(file.path) == inside)
     }
 
-    /// The shipped file of a folder whose name is the most like that of a path that leads to nothing: with its ending, without it, or, of a
-    /// `robot.ron`, that of the folder around it.
-    pub fn nearest(&self, path: &Path, folder: &str) -> Option<&ShippedFile> {
+    /// The way on, at the end of a message that nothing is at a path: the file of these folders that may be meant.
+    pub fn way_on(&self, path: &Path, folders: &[&str]) -> String {
+        match self.nearest(path, folders) {
+            _ if path.exists() => String::new(),
+            Some(near) => format!("; did you mean {}?", near.path),
+            None => "; `tabletop shipped` lists the files inside the program".into(),
+        }
+    }
+
+    /// The shipped file of these folders whose name is the most like that of a path that leads to nothing: with its ending, without it, or, of
+    /// a `robot.ron`, that of the folder around it.
+    fn nearest(&self, path: &Path, folders: &[&str]) -> Option<&ShippedFile> {
         let name = path.file_name()?.to_str()?;
-        let files: Vec<_> = self.in_folder(folder).collect();
+        let files = folders.iter().flat_map(|folder| self.in_folder(folder));
+        let files: Vec<_> = files.collect();
         let robots = files.iter().filter_map(|file| {
             let (around, name) = file.path.rsplit_once('/')?;
             let robot = around.rsplit('/').next().filter(|_| name == "robot.ron")?;
@@ -167,7 +177,11 @@ mod tests {
             file("scenarios/tower.ron"),
             TOWER,
         ]);
-        let near = |path, folder| shipped.nearest(Path::new(path), folder).map(|it| it.path);
+        let near = |path, folder| {
+            shipped
+                .nearest(Path::new(path), &[folder])
+                .map(|it| it.path)
+        };
         assert_eq!(near("panda", "assets"), Some("assets/panda/robot.ron"));
         assert_eq!(near("pnda.urdf", "assets"), Some("assets/panda/panda.urdf"));
         assert_eq!(near("there/towr", "scenarios"), Some("scenarios/tower.ron"));

@@ -8,7 +8,7 @@ use std::{
 use tabletop_core::{LayoutError, LayoutFile, Reach};
 use tabletop_robot::{Description, DescriptionError, DescriptionSource};
 
-use crate::shipped::{ROBOT_FOLDER, read_text, shipped_files, true_path, way_on};
+use crate::shipped::{ROBOT_FOLDER, read_text, shipped_files, true_path};
 
 /// The error of a robot that cannot be read: its file, and the fault.
 #[derive(Debug)]
@@ -35,7 +35,8 @@ impl fmt::Display for RobotFileError {
         write!(f, "{}: ", self.path.display())?;
         match &self.fault {
             RobotFault::Unreadable(error) => {
-                write!(f, "{error}{}", way_on(&self.path, ROBOT_FOLDER))
+                let way_on = shipped_files().way_on(&self.path, &[ROBOT_FOLDER]);
+                write!(f, "{error}{way_on}")
             }
             RobotFault::Layout(error)
             | RobotFault::Description(DescriptionError::Layout(error)) => error.fmt(f),

@@ -133,7 +133,7 @@ pub fn read_task(path: &Path) -> Result<ParsedTask, ReadError> {
 /// It is in neither, cannot be read, or has faults, which are listed.
 pub fn read_faultless_task(file: &Path, allowed: &[PathBuf]) -> Result<SceneSpec, String> {
     let task = task_reader().allowing(allowed).read(file);
-    let task = task.map_err(|error| error.to_string() + &way_on(file, "tablesetup"))?;
+    let task = task.map_err(|error| error.to_string())?;
     let faults: Vec<_> = task.faults.iter().map(ToString::to_string).collect();
     match faults.is_empty() {
         true => Ok(task.scene),
@@ -156,7 +156,7 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
         Some(file) => Scenario::parse(file.name(), file.text),
         None => Scenario::read(path).map_err(|error| match error {
             ScenarioError::Unreadable { path, reason } => ScenarioError::Unreadable {
-                reason: reason + &way_on(&path, "scenarios"),
+                reason: reason + &shipped_files().way_on(&path, &["scenarios", "tablesetup"]),
                 path,
             },
             error @ (ScenarioError::Syntax { .. }
@@ -165,15 +165,6 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
             | ScenarioError::Failed { .. }
             | ScenarioError::Several(_)) => error,
         }),
-    }
-}
-
-/// What can be done about a path that leads to nothing: the file of this folder that may be meant.
-pub(crate) fn way_on(path: &Path, folder: &str) -> String {
-    match shipped_files().nearest(path, folder) {
-        _ if path.exists() => String::new(),
-        Some(near) => format!("; did you mean {}?", near.path),
-        None => "; `tabletop shipped` lists the files inside the program".into(),
     }
 }
 

@@ -72,13 +72,35 @@ impl<'s> TaskReader<'s> {
                 tree,
             });
         }
-        let bytes = read_task_file(path)?;
+        let bytes = self.bytes_of(path)?;
         let tree = FileTree::on_disk(path, self.allowed).unwrap_or(FileTree::Absent);
         Ok(OpenFile {
             path: tree.task(path),
             bytes,
             tree,
         })
+    }
+
+    fn bytes_of(&self, path: &Path) -> Result<Vec<u8>, ReadError> {
+        let failed = |source| ReadError::Io {
+            path: path.to_path_buf(),
+            source,
+            way_on: self
+                .shipped
+                .map_or_else(String::new, |files| files.way_on(path, &["tablesetup"])),
+        };
+        if !path.metadata().map_err(failed)?.is_file() {
+            return Err(ReadError::NotAFile {
+                path: path.to_path_buf(),
+            });
+        }
+        let bytes = read_file(path, MAX_FILE_BYTES).map_err(failed)?;
+        match bytes.len() > MAX_FILE_BYTES {
+            true => Err(ReadError::TooLarge {
+                path: path.to_path_buf(),
+            }),
+            false => Ok(bytes),
+        }
     }
 }
 
@@ -94,12 +116,14 @@ struct OpenFile<'s> {
 #[non_exhaustive]
 pub enum ReadError {
     /// The operating system does not give it, for example because it does not exist.
-    #[error("{path}: it cannot be read: {source}, expected a task file", path = path.display())]
+    #[error("{path}: it cannot be read: {source}, expected a task file{way_on}", path = path.display())]
     Io {
         /// The file.
         path: PathBuf,
         /// The operating system's error.
         source: io::Error,
+        /// The shipped file that may be meant.
+        way_on: String,
     },
     /// It is a folder, a device or a pipe.
     #[error("{path}: it is not a file, expected a task file", path = path.display())]
@@ -122,25 +146,6 @@ pub enum ReadError {
 /// There is no such file, it is not a file, it cannot be read, or it is larger than [`MAX_FILE_BYTES`].
 pub fn read_task(path: &Path) -> Result<ParsedTask, ReadError> {
     TaskReader::default().read(path)
-}
-
-fn read_task_file(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let failed = |source| ReadError::Io {
-        path: path.to_path_buf(),
-        source,
-    };
-    if !path.metadata().map_err(failed)?.is_file() {
-        return Err(ReadError::NotAFile {
-            path: path.to_path_buf(),
-        });
-    }
-    let bytes = read_file(path, MAX_FILE_BYTES).map_err(failed)?;
-    match bytes.len() > MAX_FILE_BYTES {
-        true => Err(ReadError::TooLarge {
-            path: path.to_path_buf(),
-        }),
-        false => Ok(bytes),
-    }
 }
 
 #[cfg(test)]
