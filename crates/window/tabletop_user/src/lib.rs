@@ -44,7 +44,7 @@ pub use keymap::{
     was_struck,
 };
 pub use measuring::Measuring;
-pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};
+pub use navigation::{CameraMotion, CameraView, FirstView, Steering, UserCamera};
 pub use neighborhood::Neighborhood;
 pub use next_take::NextTake;
 pub use notices::{Notice, Notices, Tone};

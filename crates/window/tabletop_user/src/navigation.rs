@@ -67,6 +67,16 @@ pub enum CameraView {
     Center,
 }
 
+/// The view of the first table. Later ones leave the camera where the user has brought it.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FirstView(pub CameraView);
+
+impl Default for FirstView {
+    fn default() -> Self {
+        Self(CameraView::Start)
+    }
+}
+
 impl CameraView {
     /// The views, in the order of their buttons.
     pub const ALL: [Self; 6] = [

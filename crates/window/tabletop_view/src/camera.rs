@@ -8,7 +8,9 @@ use bevy::{
     render::view::NoIndirectDrawing,
 };
 use tabletop_core::{Hands, HeadCamera, Paused, Table};
-use tabletop_user::{Action, CameraMotion, CameraView, KeySystems, Keys, Steering, UserCamera};
+use tabletop_user::{
+    Action, CameraMotion, CameraView, FirstView, KeySystems, Keys, Steering, UserCamera,
+};
 
 use crate::viewpoint::Viewpoint;
 
@@ -29,7 +31,8 @@ const LONGEST_FRAME: f32 = 0.25;
 const LONGEST_FIRST_FRAME: f32 = 1.0 / 60.0;
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(Startup, spawn_camera)
+    app.init_resource::<FirstView>()
+        .add_systems(Startup, spawn_camera)
         .add_systems(
             RunFixedMainLoop,
             (
@@ -75,20 +78,15 @@ fn spawn_camera(mut commands: Commands) {
     ));
 }
 
-/// The first table decides where the camera starts; later ones leave it where the user has brought it.
 fn look_at_first_table(
     mut has_looked: Local<bool>,
     tables: Query<&Table>,
-    mut cameras: Query<&mut Viewpoint, With<UserCamera>>,
+    first: Res<FirstView>,
+    mut motions: MessageWriter<CameraMotion>,
 ) {
-    if *has_looked {
-        return;
-    }
-    if let Some(table) = tables.iter().next() {
-        for mut viewpoint in &mut cameras {
-            *viewpoint = Viewpoint::of_table(table);
-            *has_looked = true;
-        }
+    if !*has_looked && !tables.is_empty() {
+        motions.write(CameraMotion::Look(first.0));
+        *has_looked = true;
     }
 }
 
@@ -389,6 +387,15 @@ mod tests {
         app.world_mut().spawn(table(40.0));
         app.update();
         assert_eq!(location(&mut app), Vec3::new(0.0, -16.0, 14.0));
+    }
+
+    #[test]
+    fn the_first_view_may_be_from_the_other_side() {
+        let mut app = app(10);
+        app.insert_resource(FirstView(CameraView::Across));
+        app.world_mut().spawn(Table::default());
+        app.update();
+        assert!(location(&mut app).y > 0.0);
     }
 
     #[test]

@@ -39,7 +39,7 @@ use bevy::{
 };
 use tabletop_core::{Actor, CommandWriter, OpenRecording, RobotCommand, SceneCommand};
 use tabletop_gui::{GuiPlugin, Preferences, WidgetListPlugin, keymap_file::KeymapFile};
-use tabletop_user::{PacePlugin, PresetSeeds};
+use tabletop_user::{CameraView, FirstView, PacePlugin, PresetSeeds};
 
 use self::opening::{Beginning, Opening};
 use tabletop_history::HistoryPlugin;
@@ -225,6 +225,10 @@ fn build(options: WindowOptions) -> App {
                 }
             };
             app.add_systems(Startup, load);
+            if options.show_robot {
+                // From behind its head nothing is seen of the table.
+                app.insert_resource(FirstView(CameraView::Across));
+            }
         }
         Show::Replay(replay) => {
             let open = OpenRecording(replay.folder().to_owned());
