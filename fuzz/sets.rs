@@ -13,10 +13,9 @@ use tabletop::{
         CheckOptions, DatasetContent, DatasetFolder, check, merge, repair, statistics, summarize,
         trim,
     },
-    export::{
-        DatasetFormat, LeRobot, LeRobotReader, Rlds, Robomimic, TrainingEpisode, read_robomimic,
-    },
+    export::{DatasetFormat, LeRobot, LeRobotReader, Rlds, Robomimic, read_robomimic},
     storage::Storage,
+    training::TrainingEpisode,
 };
 
 /// The files of a dataset, by their paths in it.
