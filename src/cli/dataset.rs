@@ -18,6 +18,7 @@ use super::{
     import::failed,
     number_run::run_of,
     progress::ProgressLine,
+    quiet::counted,
     result_file::require_outside,
     terminal::{in_line, show_warnings},
     wait::WaitOption,
@@ -154,7 +155,7 @@ pub(super) fn run(args: &DatasetArgs) -> Result<ExitCode, Failure> {
                 .collect();
             let datasets = datasets.map_err(failed)?;
             let episodes = merge(&datasets, &args.out, &args.wait.storage()).map_err(failed)?;
-            format!("{episodes} episodes.\n")
+            counted(episodes, "episode") + ".\n"
         }
         DatasetAction::Split(args) => split(args)?,
         DatasetAction::Drop(args) => drop_episodes(args)?,
@@ -162,8 +163,9 @@ pub(super) fn run(args: &DatasetArgs) -> Result<ExitCode, Failure> {
             require_outside(&args.out, &[&args.place.dataset])?;
             let dataset = args.place.open()?;
             let trimmed = trim(&dataset, &args.out, &args.wait.storage()).map_err(failed)?;
-            let (episodes, frames) = (trimmed.episodes, trimmed.frames);
-            format!("{episodes} episodes, {frames} frames cut off.\n")
+            let episodes = counted(trimmed.episodes, "episode");
+            let frames = counted(trimmed.frames as usize, "frame");
+            format!("{episodes}, {frames} cut off.\n")
         }
         DatasetAction::Card(changed) => {
             let dataset = changed.place.open()?;
@@ -266,8 +268,12 @@ fn checked(args: &DatasetCheckArgs) -> Result<ExitCode, Failure> {
         .collect();
     let count = findings.len();
     text += &match count {
-        0 => format!("{episodes} episodes, nothing wrong.\n"),
-        _ => format!("{episodes} episodes, {count} faults.\n"),
+        0 => format!("{}, nothing wrong.\n", counted(episodes, "episode")),
+        _ => format!(
+            "{}, {}.\n",
+            counted(episodes, "episode"),
+            counted(count, "fault")
+        ),
     };
     Output::tell(&text)?;
     Ok(ExitCode::from(u8::from(count > 0)))
@@ -295,7 +301,7 @@ fn repaired(changed: &ChangedPlace) -> Result<String, Failure> {
             "{recording} was cut off; `tabletop replay {recording} --out NEW` makes a complete one of it.\n"
         );
     }
-    Ok(text + &format!("{} episodes.\n", repair.episodes))
+    Ok(text + &counted(repair.episodes, "episode") + ".\n")
 }
 
 /// Reads a part and its share, such as `train=9`.
@@ -342,7 +348,7 @@ fn split(args: &SplitArgs) -> Result<String, Failure> {
     let lines = parts.iter().map(|part| {
         let name = part.name.as_ref().map(InnerPath::as_path);
         let name = name.unwrap_or(Path::new("")).display();
-        format!("{name}: {} episodes.\n", part.episodes.len())
+        format!("{name}: {}.\n", counted(part.episodes.len(), "episode"))
     });
     Ok(lines.collect())
 }
@@ -366,5 +372,5 @@ fn drop_episodes(args: &DropArgs) -> Result<String, Failure> {
     };
     let count = rest.episodes.len();
     divide(&[dataset], &args.out, &[rest], &args.wait.storage()).map_err(failed)?;
-    Ok(format!("{count} episodes.\n"))
+    Ok(counted(count, "episode") + ".\n")
 }

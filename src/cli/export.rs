@@ -19,6 +19,7 @@ use super::{
     cut_off::say_if_cut_off,
     picture_size::picture_size,
     progress::ProgressLine,
+    quiet::counted,
     range::NumberRange,
     recordings::recordings_in,
     result_file::require_outside,
@@ -219,5 +220,6 @@ fn failed(error: ExportError) -> Failure {
 fn reported(summary: ExportSummary, seconds: f64) -> String {
     let ExportSummary { episodes, frames } = summary;
     let rate = frames as f64 / seconds.max(1e-3);
-    format!("{episodes} episodes, {frames} frames; {rate:.0} frames a second.\n")
+    let (episodes, frames) = (counted(episodes, "episode"), counted(frames, "frame"));
+    format!("{episodes}, {frames}; {rate:.0} frames a second.\n")
 }

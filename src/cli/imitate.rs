@@ -37,6 +37,7 @@ use super::{
     allowed_paths::AllowedPaths,
     explain::{furniture, read},
     hand_cameras::HandCameraOption,
+    quiet::counted,
     range::{NumberRange, SEEDS},
     real::{self, DrivenOptions},
     recorded::{self, say_moved_aside},
@@ -354,8 +355,9 @@ fn single(task: &Task, trial: &Trial) -> String {
     let times = format!("{:.1} s simulated in {:.2} s", trial.simulated, trial.real);
     match &imitation.failure {
         None => format!(
-            "Done: {} steps, {} corrections; {times}.\n",
-            imitation.steps_done, imitation.corrections
+            "Done: {}, {}; {times}.\n",
+            counted(imitation.steps_done, "step"),
+            counted(imitation.corrections, "correction")
         ),
         Some((step, failure)) => {
             let sentence = task.step(*step).map_or("", |step| step.sentence.as_str());

@@ -10,6 +10,7 @@ use crate::shipped::read_faultless_task;
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
+    quiet::counted,
     recorded::say_moved_aside,
     result_file::require_outside,
     terminal::{say, show_warnings},
@@ -77,6 +78,9 @@ fn reported(import: &Import) -> String {
     let seconds = *last_frame as f64 / 4.0;
     let acts = acts.name();
     format!(
-        "{segments} segments, {seconds} s, {objects} objects; {recorded_pictures} pictures taken over, {drawn_pictures} drawn; acts of hands {acts}.\n"
+        "{}, {seconds} s, {}; {} taken over, {drawn_pictures} drawn; acts of hands {acts}.\n",
+        counted(*segments, "segment"),
+        counted(*objects, "object"),
+        counted(*recorded_pictures, "picture")
     )
 }

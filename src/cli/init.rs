@@ -15,7 +15,7 @@ use crate::{
 };
 use clap::Args;
 
-use super::{Failure, Output, result_file::require_outside};
+use super::{Failure, Output, quiet::counted, result_file::require_outside};
 
 #[derive(Args)]
 pub(super) struct InitArgs {
@@ -83,11 +83,24 @@ fn make_folder(target: &Path) -> Result<(), Failure> {
         let there = shipped_files().in_folder(folder).count() - written;
         let place = InnerPath::fixed(folder).below(target);
         let line = match (written, there) {
-            (written, 0) => format!("{}: {written} files written\n", place.display()),
-            (0, there) => format!("{}: {there} files there already\n", place.display()),
+            (written, 0) => {
+                format!(
+                    "{}: {} written\n",
+                    place.display(),
+                    counted(written, "file")
+                )
+            }
+            (0, there) => {
+                format!(
+                    "{}: {} there already\n",
+                    place.display(),
+                    counted(there, "file")
+                )
+            }
             (written, there) => format!(
-                "{}: {written} files written, {there} there already\n",
-                place.display()
+                "{}: {} written, {there} there already\n",
+                place.display(),
+                counted(written, "file")
             ),
         };
         Output::tell(&line)?;

@@ -28,6 +28,7 @@ use tabletop_core::{
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
+    quiet::counted,
     range::{NumberRange, SEEDS},
     recorded::{self, say_moved_aside},
     result_file::{ResultKind, require_outside},
@@ -326,10 +327,10 @@ fn single(trial: &ToldTrial) -> String {
     let Some(told) = &trial.told else {
         return "There is no room for everything.\n".into();
     };
-    let (steps, corrections) = (told.steps.len(), told.corrections);
+    let (steps, corrections) = (counted(told.steps.len(), "step"), told.corrections);
     match &told.failure {
-        None => format!("Done: {steps} steps, {corrections} corrections.\n"),
-        Some(failure) => format!("Failed after {steps} steps: {failure}\n"),
+        None => format!("Done: {steps}, {}.\n", counted(corrections, "correction")),
+        Some(failure) => format!("Failed after {steps}: {failure}\n"),
     }
 }
 

@@ -32,6 +32,7 @@ use super::{
     explain::{furniture, print, print_json, reported},
     head_camera::taking,
     import::failed,
+    quiet::counted,
     range::NumberRange,
     recorded::say_moved_aside,
     result_file::require_outside,
@@ -354,7 +355,8 @@ impl WatchedRoll {
         };
         let share = |percent: usize| errors[last * percent / 100];
         Some(format!(
-            "{pictures} pictures; greatest error of a pose: median {:.4}, 90 % {:.4}, 99 % {:.3}, at most {:.3} units{unseen}",
+            "{}; greatest error of a pose: median {:.4}, 90 % {:.4}, 99 % {:.3}, at most {:.3} units{unseen}",
+            counted(pictures, "picture"),
             share(50),
             share(90),
             share(99),

@@ -68,7 +68,7 @@ fn recordings_are_described_merged_split_and_dropped_whole() {
         "--into",
         "train=2,valid=1",
     ]);
-    assert_eq!(said, "train: 2 episodes.\nvalid: 1 episodes.\n");
+    assert_eq!(said, "train: 2 episodes.\nvalid: 1 episode.\n");
     done(&["dataset", "drop", &many, &rest, "--episodes", "1"]);
     for (folder, original) in [("0000", "0000"), ("0002", "0002")] {
         let copy = format!("{rest}/{folder}");
@@ -141,7 +141,7 @@ fn still_ends_are_cut_off_and_the_rest_replays() {
     let demo = crate::support::record(scenario.to_str().unwrap(), "dataset_still");
     let trimmed = path("dataset_still_trimmed");
     let said = done(&["dataset", "trim", &demo, &trimmed]);
-    assert!(said.starts_with("1 episodes, "), "{said}");
+    assert!(said.starts_with("1 episode, "), "{said}");
     let demo_name = Path::new(&demo).file_name().unwrap();
     let trimmed = Path::new(&trimmed).join(demo_name);
     replays_to_the_same_bytes(&trimmed);
@@ -283,10 +283,10 @@ fn still_ends_of_videos_are_cut_off_where_the_rest_can_be_decoded() {
             "export", &demo, "--to", "lerobot", &set, "--video", "--size", "48x36",
         ]);
         let said = done(&["dataset", "trim", &set, &trimmed]);
-        assert!(said.starts_with("1 episodes, "), "{said}");
+        assert!(said.starts_with("1 episode, "), "{said}");
         assert_eq!(
             done(&["dataset", "check", &trimmed]),
-            "1 episodes, nothing wrong.\n"
+            "1 episode, nothing wrong.\n"
         );
     }
 }

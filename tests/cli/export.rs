@@ -28,7 +28,7 @@ fn every_format_takes_pictures_that_were_not_recorded() {
             stderr(&output)
         );
         assert!(
-            stdout(&output).starts_with("1 episodes, "),
+            stdout(&output).starts_with("1 episode, "),
             "{format}: {}",
             stdout(&output)
         );

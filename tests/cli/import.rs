@@ -101,7 +101,7 @@ fn all_commands_but_replay_take_an_imported_recording() {
     let dataset = place("import_used_dataset").to_str().unwrap().to_owned();
     done(&["export", &out, "--to", "lerobot", &dataset]);
     let checked = done(&["dataset", "check", &out]);
-    assert_eq!(checked, "1 episodes, nothing wrong.\n");
+    assert_eq!(checked, "1 episode, nothing wrong.\n");
     let output = tabletop(&["replay", &out]);
     assert_eq!(output.status.code(), Some(2));
     let said = stderr(&output);
@@ -132,7 +132,7 @@ fn lines_that_make_no_sense_are_told_and_left_out() {
     }
     let checked = stdout(&tabletop(&["dataset", "check", out.to_str().unwrap()]));
     assert!(
-        checked.ends_with("its task is empty: nothing is moved for good\n1 episodes, 1 faults.\n"),
+        checked.ends_with("its task is empty: nothing is moved for good\n1 episodes, 1 fault.\n"),
         "{checked}"
     );
 }

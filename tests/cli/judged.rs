@@ -389,5 +389,5 @@ fn the_oracle_does_every_task() {
     let demo = record_shipped("red_on_blue", "judged_oracle");
     let output = tabletop(&["imitate", &demo, "--policy", &oracle.address, "--seed", "3"]);
     let said = stdout(&output) + &stderr(&output);
-    assert!(said.contains("Done: 1 steps"), "{said}");
+    assert!(said.contains("Done: 1 step"), "{said}");
 }

@@ -199,7 +199,7 @@ fn a_signal_brings_the_arm_to_rest_and_the_recording_is_whole() {
     // It is whole, and shows nothing but motions of the robot.
     let checked = stdout(&tabletop(&["dataset", "check", demo]));
     let no_task = format!("{demo}: its task is empty: nothing is moved for good\n");
-    assert_eq!(checked, no_task + "1 episodes, 1 faults.\n");
+    assert_eq!(checked, no_task + "1 episode, 1 fault.\n");
 }
 
 #[cfg(unix)]

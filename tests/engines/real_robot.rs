@@ -149,7 +149,7 @@ fn a_real_robot_imitates_with_objects_at_the_places_of_a_task_file() {
     let output = tabletop(&[&arguments[..], &with, &record].concat());
     let said = format!("{}{}", stdout(&output), stderr(&output));
     assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(said.contains("Done: 1 steps"), "{said}");
+    assert!(said.contains("Done: 1 step"), "{said}");
     assert_eq!(baxter.report().dropped, 0);
     let states = fs::read_to_string(recorded.join("states.csv")).unwrap();
     let last = |id: &str| {
