@@ -132,7 +132,7 @@ fn lines_that_make_no_sense_are_told_and_left_out() {
     }
     let checked = stdout(&tabletop(&["dataset", "check", out.to_str().unwrap()]));
     assert!(
-        checked.ends_with("its task is empty: nothing is moved for good\n1 episodes, 1 fault.\n"),
+        checked.ends_with("its task is empty: nothing is moved for good\n1 episode, 1 fault.\n"),
         "{checked}"
     );
 }
