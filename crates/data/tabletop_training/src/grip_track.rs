@@ -42,7 +42,8 @@ impl GripTrack {
         changes > 0 && self.holding[changes - 1].1.contains(&limb)
     }
 
-    /// The positions that joints were ordered to have in each frame, by those that they had: fingers that hold something were to close entirely.
+    /// The positions that joints were ordered to have in each frame, by those that they had: fingers that hold something, or close on it, were to
+    /// close entirely, and those that open or close otherwise were to come to where they did.
     pub fn orders(
         &self,
         joints: &FrameVectors,
@@ -60,14 +61,30 @@ impl GripTrack {
             else {
                 continue;
             };
-            for (frame, tick) in orders.values.chunks_mut(width).zip(ticks) {
-                if self.holds(limb.name, *tick) {
-                    frame[column] = joint.limits[0] as f32;
-                }
+            let openings: Vec<_> = joints.frames().map(|frame| frame[column]).collect();
+            let frames = orders
+                .values
+                .chunks_mut(width)
+                .map(|frame| &mut frame[column]);
+            let mut after = None;
+            for ((number, order), tick) in frames.enumerate().zip(ticks).rev() {
+                let way = openings[number] - openings[number.saturating_sub(1)];
+                let opening = openings[number];
+                *order = match after {
+                    _ if self.holds(limb.name, *tick) => joint.limits[0] as f32,
+                    Some(after) if goes_on(way, opening, after) => after,
+                    Some(_) | None => opening,
+                };
+                after = Some(*order);
             }
         }
         orders
     }
+}
+
+/// True if a motion of this way to a position goes on to the order after it.
+fn goes_on(way: f32, position: f32, order: f32) -> bool {
+    way != 0.0 && (order - position) * way > 0.0
 }
 
 #[cfg(test)]
@@ -103,5 +120,31 @@ mod tests {
         let orders = grips.orders(&joints, layout, &ticks);
         assert_eq!(orders.values, [0.5, 0.9, 0.5, 0.0, 0.5, 0.6]);
         assert!(grips.grips());
+    }
+
+    #[test]
+    fn fingers_that_move_are_ordered_to_where_they_come() {
+        let layout = RobotLayout::baxter();
+        let limb = layout.limb(LimbId(1));
+        let act = |tick, deed| ShownAct {
+            tick: SimTick(tick),
+            by: Manipulator::Gripper(limb.name),
+            deed,
+        };
+        let shown = Demonstration {
+            acts: vec![
+                act(4, ActDeed::Grasp("Red".into())),
+                act(6, ActDeed::Release(Some("Red".into()))),
+            ],
+            ..Demonstration::default()
+        };
+        let joints = FrameVectors {
+            names: vec![layout.joint(limb.gripper.joint).name.to_string()],
+            values: vec![0.9, 0.9, 0.7, 0.5, 0.4, 0.4, 0.5, 0.7, 0.8, 0.8, 0.6, 0.6],
+        };
+        let ticks: Vec<_> = (0..12).map(SimTick).collect();
+        let orders = GripTrack::of(&shown).orders(&joints, layout, &ticks);
+        let expected = [0.9, 0.9, 0.0, 0.0, 0.0, 0.0, 0.8, 0.8, 0.8, 0.8, 0.6, 0.6];
+        assert_eq!(orders.values, expected);
     }
 }

@@ -52,7 +52,8 @@ pub enum StateKind {
 pub enum ActionKind {
     /// The motion of each hand until the next frame: along X, Y and Z in units, about them in rad, and 1 while it holds something.
     Hands,
-    /// The positions that the robot's joints are ordered to have in the next frame: where they are then, and closed fingers while they hold something.
+    /// The positions that the robot's joints are ordered to have in the next frame: where they are then. Fingers are ordered to where their motion
+    /// ends, and to close entirely while they hold something or close on it.
     Joints,
     /// The motion of each end effector until the next frame, as for hands, and the opening that its gripper is ordered to have
     /// in the next frame, in units.
