@@ -11,7 +11,7 @@ use thiserror::Error;
 pub enum ExportError {
     /// A recording cannot be read as an episode.
     #[error(transparent)]
-    Episode(#[from] EpisodeError),
+    Episode(Box<EpisodeError>),
     /// A video cannot be encoded or decoded.
     #[error(transparent)]
     Film(#[from] FilmError),
@@ -41,9 +41,15 @@ pub enum ExportError {
     },
 }
 
+impl From<EpisodeError> for ExportError {
+    fn from(error: EpisodeError) -> Self {
+        Self::Episode(Box::new(error))
+    }
+}
+
 impl ExportError {
     /// Whether the user's input is at fault, and not the disk.
-    pub const fn is_of_input(&self) -> bool {
+    pub fn is_of_input(&self) -> bool {
         match self {
             Self::Episode(error) => error.is_of_input(),
             Self::Film(_) | Self::Unfit { .. } | Self::Dataset { .. } => true,
