@@ -54,7 +54,7 @@ pub use self::{
 use crate::{error::ExportError, format::DatasetFormat};
 
 /// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames, so that nothing is lost;
-/// those of cameras with a [video](crate::CameraTrack::video) are videos instead.
+/// those of cameras with a [video](tabletop_training::CameraTrack::video) are videos instead.
 #[derive(Debug)]
 pub struct LeRobot {
     folder: PathBuf,
