@@ -8,6 +8,7 @@ mod cameras;
 mod check;
 mod compare;
 mod completions;
+mod counted;
 mod cut_off;
 mod dataset;
 mod demonstration;

@@ -15,10 +15,10 @@ use clap::{Args, Subcommand};
 
 use super::{
     Failure, Output,
+    counted::counted,
     import::failed,
     number_run::run_of,
     progress::ProgressLine,
-    quiet::counted,
     result_file::require_outside,
     terminal::{in_line, show_warnings},
     wait::WaitOption,

@@ -10,7 +10,7 @@ use crate::shipped::read_faultless_task;
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
-    quiet::counted,
+    counted::counted,
     recorded::say_moved_aside,
     result_file::require_outside,
     terminal::{say, show_warnings},

@@ -15,7 +15,7 @@ use crate::{
 };
 use clap::Args;
 
-use super::{Failure, Output, quiet::counted, result_file::require_outside};
+use super::{Failure, Output, counted::counted, result_file::require_outside};
 
 #[derive(Args)]
 pub(super) struct InitArgs {

@@ -5,7 +5,7 @@ use std::{fmt, path::Path};
 use crate::{core::TICKS_PER_SECOND, recorder::RecordingReader};
 use clap::Args;
 
-use super::terminal::say;
+use super::{counted::counted, terminal::say};
 
 #[derive(Args)]
 pub(super) struct QuietOption {
@@ -45,12 +45,4 @@ impl QuietOption {
 pub(super) fn seconds_of(recording: &RecordingReader) -> f64 {
     let ticks = recording.last_tick().0 + 1 - recording.first_tick().0;
     ticks as f64 / f64::from(TICKS_PER_SECOND)
-}
-
-/// A number of things, in words.
-pub(super) fn counted(count: usize, of_what: &str) -> String {
-    match count {
-        1 => format!("1 {of_what}"),
-        count => format!("{count} {of_what}s"),
-    }
 }

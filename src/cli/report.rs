@@ -10,9 +10,10 @@ use clap::Args;
 
 use super::{
     Failure,
+    counted::counted,
     cut_off::say_if_cut_off,
     progress::ProgressLine,
-    quiet::{QuietOption, counted},
+    quiet::QuietOption,
     recordings::recordings_in,
     result_file::{ResultFile, ResultKind},
     terminal::show_warnings,

@@ -23,9 +23,9 @@ use tabletop_scenario::{Outcome, Scenario, ScenarioRun, Step};
 
 use super::{
     Failure, Output,
+    counted::counted,
     duration::{pass, ticks},
     explain::read,
-    quiet::counted,
     real,
     recorded::{self, say_moved_aside},
     result_file::{ResultKind, require_outside},

@@ -28,7 +28,7 @@ use tabletop_core::{
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
-    quiet::counted,
+    counted::counted,
     range::{NumberRange, SEEDS},
     recorded::{self, say_moved_aside},
     result_file::{ResultKind, require_outside},

@@ -28,11 +28,11 @@ use tabletop_geometry::{Pose, Rgb};
 use super::{
     Failure,
     allowed_paths::AllowedPaths,
+    counted::counted,
     cut_off::say_if_cut_off,
     explain::{furniture, print, print_json, reported},
     head_camera::taking,
     import::failed,
-    quiet::counted,
     range::NumberRange,
     recorded::say_moved_aside,
     result_file::require_outside,

@@ -94,23 +94,28 @@ mod tests {
 
     use super::*;
 
+    /// The gripper of a limb holds a block from one of these ticks to the other.
+    fn held(limb: LimbName, [from, to]: [u64; 2]) -> Demonstration {
+        let act = |tick, deed| ShownAct {
+            tick: SimTick(tick),
+            by: Manipulator::Gripper(limb),
+            deed,
+        };
+        Demonstration {
+            acts: vec![
+                act(from, ActDeed::Grasp("Red".into())),
+                act(to, ActDeed::Release(Some("Red".into()))),
+            ],
+            ..Demonstration::default()
+        }
+    }
+
     #[test]
     fn fingers_that_hold_something_are_ordered_to_close_entirely() {
         let layout = RobotLayout::baxter();
         let limb = layout.limb(LimbId(1));
         let joint = layout.joint(limb.gripper.joint);
-        let act = |tick, deed| ShownAct {
-            tick: SimTick(tick),
-            by: Manipulator::Gripper(limb.name),
-            deed,
-        };
-        let shown = Demonstration {
-            acts: vec![
-                act(5, ActDeed::Grasp("Red".into())),
-                act(15, ActDeed::Release(Some("Red".into()))),
-            ],
-            ..Demonstration::default()
-        };
+        let shown = held(limb.name, [5, 15]);
         let joints = FrameVectors {
             names: vec!["right_s0".into(), joint.name.to_string()],
             values: vec![0.5, 0.9, 0.5, 0.4, 0.5, 0.6],
@@ -126,18 +131,7 @@ mod tests {
     fn fingers_that_move_are_ordered_to_where_they_come() {
         let layout = RobotLayout::baxter();
         let limb = layout.limb(LimbId(1));
-        let act = |tick, deed| ShownAct {
-            tick: SimTick(tick),
-            by: Manipulator::Gripper(limb.name),
-            deed,
-        };
-        let shown = Demonstration {
-            acts: vec![
-                act(4, ActDeed::Grasp("Red".into())),
-                act(6, ActDeed::Release(Some("Red".into()))),
-            ],
-            ..Demonstration::default()
-        };
+        let shown = held(limb.name, [4, 6]);
         let joints = FrameVectors {
             names: vec![layout.joint(limb.gripper.joint).name.to_string()],
             values: vec![0.9, 0.9, 0.7, 0.5, 0.4, 0.4, 0.5, 0.7, 0.8, 0.8, 0.6, 0.6],
